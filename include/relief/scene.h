@@ -357,6 +357,7 @@ struct PictureDefaults {
     std::optional<int> width, height, spp, bounces;
     std::optional<uint32_t> seed;
 };
+    std::optional<float> fps; ///< frames a second, > 0; for other programs
 
 struct Scene {
     std::vector<Mesh> meshes;

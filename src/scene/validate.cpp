@@ -378,6 +378,8 @@ void check_picture(const PictureDefaults& picture) {
     check("height", picture.height, 1, kMaxPictureSize);
     check("spp", picture.spp, 1, kMaxSamples);
     check("bounces", picture.bounces, 0, kMaxBounces);
+    if (picture.fps && !(*picture.fps > 0 && *picture.fps <= kHuge))
+        fail("render", fmt::format("fps is {}, not above 0", *picture.fps));
 }
 
 } // namespace

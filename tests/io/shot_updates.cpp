@@ -11,7 +11,7 @@ namespace relief {
 
 namespace {
 
-constexpr const char* kMovingScene = R"({"render": {"frames": "1-4"},
+constexpr const char* kMovingScene = R"({"render": {"frames": "1-4", "fps": 24},
   "camera": {"from": {"keys": [[1, [0, 0, 5]], [5, [4, 0, 5]]]}, "to": [0, 0, 0]},
   "materials": {"clay": {"roughness": {"keys": [[2, 0.5], [3, 0.5], [4, 1]]}}},
   "displacements": {"ear": {"file": "map.exr", "type": "vector", "scale": {"keys": [[4, 1], [5, 2]]}}},
@@ -326,6 +326,13 @@ TEST_F(ShotUpdates, have_hashes_of_the_keys_that_a_shutter_sees) {
     EXPECT_NE(hash(plain, "[-0.25, 0.25]"), hash(beside, "[-0.25, 0.25]"));
     EXPECT_NE(hash(plain, "[-0.25, 0.25]"), hash(within, "[-0.25, 0.25]"));
     EXPECT_EQ(hash(plain, "[-0.25, 0.25]"), hash(far, "[-0.25, 0.25]"));
+}
+
+TEST_F(ShotUpdates, keep_the_rate_of_frames) {
+    EXPECT_EQ(make_shot(kMovingScene).load(1).picture.fps, 24);
+    save_scene(make_shot(kMovingScene).load(1), folder_ / "copy");
+    EXPECT_EQ(load_scene(folder_ / "copy" / "scene.json").picture.fps, 24);
+    EXPECT_HAS(error_of(R"({"render": {"fps": 0}})"), "render.fps");
 }
 
 } // namespace

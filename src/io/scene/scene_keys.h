@@ -12,7 +12,7 @@ template <class... Text> constexpr auto make_keys(Text... text) {
 
 inline constexpr auto kRoot = make_keys("version", "render", "camera", "environment", "materials",
                                         "displacements", "meshes", "objects", "lights");
-inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed", "frames");
+inline constexpr auto kPicture = make_keys("width", "height", "spp", "bounces", "seed", "frames", "fps");
 inline constexpr auto kKeyed = make_keys("keys", "interpolation");
 inline constexpr auto kCamera =
     make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance", "shift", "shutter");

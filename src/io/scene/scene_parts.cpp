@@ -59,7 +59,7 @@ bool has_moving_sections(const Json& document) {
 uint64_t hash_part(const std::string& path, const Json& value) {
     nlohmann::json canonical = value; // sorts the keys
     if (path == "render" && canonical.is_object())
-        for (const char* key : {"width", "height", "spp", "frames"}) canonical.erase(key);
+        for (const char* key : {"width", "height", "spp", "frames", "fps"}) canonical.erase(key);
     ContentHash hash;
     hash.add(path), hash.add(canonical.dump());
     return hash.value();

@@ -121,6 +121,7 @@ PictureDefaults read_picture(const JsonNode& node) {
     if (const auto seed = node.find("seed"))
         picture.seed = uint32_t(seed->as_integer(0, std::numeric_limits<uint32_t>::max()));
     if (const auto frames = node.find("frames")) parse_frames_at(*frames);
+    if (const auto fps = node.find("fps")) picture.fps = fps->as_float(FLT_MIN);
     return picture;
 }
 

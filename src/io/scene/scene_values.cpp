@@ -20,6 +20,7 @@ Json write_picture(const PictureDefaults& picture) {
     if (picture.spp) node["spp"] = *picture.spp;
     if (picture.bounces) node["bounces"] = *picture.bounces;
     if (picture.seed) node["seed"] = *picture.seed;
+    if (picture.fps) node["fps"] = to_json(*picture.fps);
     return node;
 }
 
