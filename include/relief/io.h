@@ -134,6 +134,10 @@ void refuse_foreign_file(const std::filesystem::path& file);
 
 struct MeshReadOptions {
     int uv_set = 0; ///< of glTF and FBX, from 0; OBJ and PLY have only set 0
+    /// Of glTF: name or number, from 0, of the animation that moves nodes and morph targets; empty: they
+    /// rest.
+    std::string animation;
+    double time = 0; ///< in it, seconds
     MeshReaderSettings reader;
 };
 

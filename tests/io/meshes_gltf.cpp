@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/mesh/mesh_gltf.h"
+#include "io/gltf_document.h"
 #include "io/test_files.h"
 
 namespace relief {
@@ -13,67 +13,12 @@ namespace {
 using GltfFiles = FileTest;
 using Json = nlohmann::json;
 
-/// A glTF document in the making: accessors with bytes of their own, in one buffer.
-class Document {
-  public:
-    Document() {
-        json = {
-            {"asset", {{"version", "2.0"}}}, {"accessors", Json::array()}, {"bufferViews", Json::array()}};
-    }
+using Document = GltfDocument;
 
-    template <class T> int add(const std::string& type, int component, const std::vector<T>& values) {
-        const size_t width = type == "SCALAR" ? 1 : size_t(type.back() - '0');
-        const size_t bytes = values.size() * sizeof(T);
-        json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes}});
-        buffer.append(reinterpret_cast<const char*>(values.data()), bytes);
-        buffer.resize((buffer.size() + 3) / 4 * 4);
-        json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
-                                     {"componentType", component},
-                                     {"count", values.size() / width},
-                                     {"type", type}});
-        return int(json["accessors"].size()) - 1;
-    }
-    int add_floats(const std::string& type, const std::vector<float>& values) {
-        return add(type, 5126, values);
-    }
-
-    std::string make_glb() const {
-        Json whole = json;
-        whole["buffers"] = {{{"byteLength", buffer.size()}}};
-        std::string text = whole.dump();
-        text.resize((text.size() + 3) / 4 * 4, ' ');
-        const auto word = [](size_t value) {
-            const auto number = uint32_t(value);
-            return std::string(reinterpret_cast<const char*>(&number), 4);
-        };
-        return "glTF" + word(2) + word(28 + text.size() + buffer.size()) + word(text.size()) + "JSON" + text +
-               word(buffer.size()) + std::string("BIN\0", 4) + buffer;
-    }
-
-    Json json;
-    std::string buffer;
-};
-
-const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-
-/// A square as one primitive of one mesh, without nodes.
-Document make_square() {
-    Document document;
-    const int positions = document.add_floats("VEC3", kSquare);
-    const int indices = document.add<uint16_t>("SCALAR", 5123, {0, 1, 2, 0, 2, 3});
-    document.json["meshes"] = {
-        {{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
-    return document;
-}
-
-Json& primitive_of(Document& document) { return document.json["meshes"][0]["primitives"][0]; }
-
-std::string refuse(const std::string& path) {
-    throw Error(ErrorKind::bad_input, {"there is no file " + path, "", "make one"});
-}
+Document make_square() { return make_gltf_square(); }
 
 Mesh parse(const Document& document, const MeshReadOptions& options = {}) {
-    return parse_gltf(document.make_glb(), "m.glb", refuse, options);
+    return parse_document(document, options);
 }
 
 TEST_F(GltfFiles, triangles_strips_and_fans_of_all_kinds_of_indices) {
@@ -253,7 +198,8 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
     EXPECT_HAS(set("/accessors/0/bufferView", 9), "there is no bufferView 9: the file has 2");
     EXPECT_HAS(set("/accessors/0/componentType", 5124), "5124");
     EXPECT_HAS(set("/accessors/0/type", "VEC4"), "is of type VEC4, not VEC3");
-    EXPECT_HAS(set("/accessors/0/sparse", Json::object()), "accessors[0]: is sparse (export it without");
+    EXPECT_HAS(set("/accessors/0/sparse", Json::object()), "accessors[0].sparse: key 'count' is missing");
+    EXPECT_HAS(set("/accessors/1/sparse", Json::object()), "accessors[1]: is sparse (export it without");
     EXPECT_HAS(set("/accessors/1/componentType", 5122), "indices must be unsigned integers");
     EXPECT_HAS(set("/bufferViews/0/byteStride", 8), "bufferViews[0].byteStride");
     EXPECT_HAS(set("/bufferViews/0/byteStride", 20), "goes to byte 72");

@@ -57,6 +57,11 @@ size_t read_offset(const JsonNode& node) {
     return size_t(offset ? offset->as_integer(0, kMostFileBytes) : 0);
 }
 
+size_t read_count(const JsonNode& node) {
+    constexpr int64_t kMostValues = int64_t(std::numeric_limits<uint32_t>::max()) - 1;
+    return size_t(node.get("count").as_integer(0, kMostValues));
+}
+
 std::string_view get_type_name(size_t width) {
     constexpr std::array<std::string_view, 5> kNames = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
     return kNames[width];
@@ -162,19 +167,23 @@ std::string_view GltfFile::find_view(const JsonNode& view) {
 }
 
 GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {
-    if (accessor.find("sparse")) accessor.fail("is sparse", "export it without sparse accessors");
-    const std::optional<JsonNode> view_index = accessor.find("bufferView");
-    if (!view_index)
-        accessor.fail("has no 'bufferView'", "export it without compression, such as that of Draco");
     if (const std::string type = accessor.get("type").as_string(); type != get_type_name(width))
         accessor.fail(fmt::format("is of type {}, not {}", type, get_type_name(width)), kDamagedFileHint);
-    Values values;
-    values.width = width;
-    const int64_t component = accessor.get("componentType").as_integer(kFirstComponent, kLastComponent);
-    if (component == kNoComponent)
-        accessor.fail("has componentType 5124, which glTF does not know", kDamagedFileHint);
-    values.component = &kComponents[size_t(component - kFirstComponent)];
+    Values values = locate(accessor, accessor.get("componentType"), read_count(accessor), width);
     if (const auto normalized = accessor.find("normalized")) values.is_normalized = normalized->as_bool();
+    return values;
+}
+
+GltfFile::Values GltfFile::locate(const JsonNode& place, const JsonNode& component_type, size_t count,
+                                  size_t width) {
+    const std::optional<JsonNode> view_index = place.find("bufferView");
+    if (!view_index)
+        place.fail("has no 'bufferView'", "export it without compression, such as that of Draco");
+    Values values;
+    values.width = width, values.count = count;
+    const int64_t component = component_type.as_integer(kFirstComponent, kLastComponent);
+    if (component == kNoComponent) component_type.fail("is 5124, which glTF does not know", kDamagedFileHint);
+    values.component = &kComponents[size_t(component - kFirstComponent)];
     const JsonNode& view = resolve(*view_index, views_, "bufferView");
     const std::string_view bytes = find_view(view);
     const size_t element_bytes = width * values.component->bytes;
@@ -182,39 +191,76 @@ GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {
     const auto stride = view.find("byteStride");
     values.stride =
         stride ? size_t(stride->as_integer(int64_t(element_bytes), kLongestStride)) : element_bytes;
-    constexpr int64_t kMostValues = int64_t(std::numeric_limits<uint32_t>::max()) - 1;
-    values.count = size_t(accessor.get("count").as_integer(0, kMostValues));
-    const size_t offset = read_offset(accessor);
+    const size_t offset = read_offset(place);
     const size_t end = values.count == 0 ? 0 : offset + (values.count - 1) * values.stride + element_bytes;
     if (end > bytes.size())
-        accessor.fail(fmt::format("goes to byte {} of a bufferView of {} bytes", end, bytes.size()),
-                      kDamagedFileHint);
+        place.fail(fmt::format("goes to byte {} of a bufferView of {} bytes", end, bytes.size()),
+                   kDamagedFileHint);
     if (values.count > 0) values.begin = bytes.data() + offset;
     return values;
 }
 
-std::span<const float> GltfFile::read_floats(const JsonNode& accessor_index, size_t width) {
-    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
-    const Values values = find_values(accessor, width);
-    const auto [found, is_new] = floats_.try_emplace(&accessor);
-    if (!is_new) return found->second;
-    found->second.reserve(values.count * width);
+std::vector<float> GltfFile::load_floats(const Values& values) {
+    std::vector<float> result;
+    result.reserve(values.count * values.width);
     for (size_t i = 0; i < values.count; ++i)
-        for (size_t k = 0; k < width; ++k)
-            found->second.push_back(values.component->load_float(
+        for (size_t k = 0; k < values.width; ++k)
+            result.push_back(values.component->load_float(
                 values.begin + i * values.stride + k * values.component->bytes, values.is_normalized));
-    return found->second;
+    return result;
 }
 
-std::vector<uint32_t> GltfFile::read_indices(const JsonNode& accessor_index) {
-    const Values values = find_values(resolve(accessor_index, accessors_, "accessor"), 1);
+std::vector<uint32_t> GltfFile::load_indices(const Values& values, const JsonNode& place) {
     if (!values.component->load_index && values.count > 0)
-        accessor_index.fail("indices must be unsigned integers", kDamagedFileHint);
+        place.fail("indices must be unsigned integers", kDamagedFileHint);
     std::vector<uint32_t> result;
     result.reserve(values.count);
     for (size_t i = 0; i < values.count; ++i)
         result.push_back(values.component->load_index(values.begin + i * values.stride));
     return result;
+}
+
+/// Replaces some of the values (specification, 3.6.2.3).
+void GltfFile::apply_sparse(const JsonNode& accessor, const JsonNode& sparse, size_t width,
+                            std::vector<float>& floats) {
+    const size_t count = read_count(sparse);
+    const JsonNode index_place = sparse.get("indices"), value_place = sparse.get("values");
+    const std::vector<uint32_t> indices =
+        load_indices(locate(index_place, index_place.get("componentType"), count, 1), index_place);
+    Values values = locate(value_place, accessor.get("componentType"), count, width);
+    if (const auto normalized = accessor.find("normalized")) values.is_normalized = normalized->as_bool();
+    const std::vector<float> replacements = load_floats(values);
+    for (size_t i = 0; i < count; ++i) {
+        if (indices[i] >= floats.size() / width)
+            index_place.fail(fmt::format("index {} is {}, out of range: there are {} values", i, indices[i],
+                                         floats.size() / width),
+                             kDamagedFileHint);
+        for (size_t k = 0; k < width; ++k) floats[indices[i] * width + k] = replacements[i * width + k];
+    }
+}
+
+std::span<const float> GltfFile::read_floats(const JsonNode& accessor_index, size_t width) {
+    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
+    const auto sparse = accessor.find("sparse");
+    const bool is_zero = sparse && !accessor.find("bufferView");
+    const Values values = is_zero ? Values{} : find_values(accessor, width);
+    const auto [found, is_new] = floats_.try_emplace(&accessor);
+    if (!is_new) return found->second;
+    if (!is_zero) {
+        found->second = load_floats(values);
+    } else {
+        constexpr size_t kMostZeros = size_t(1) << 26; // no bytes of the file bound them
+        if (read_count(accessor) > kMostZeros / width) accessor.fail("has too many values", kDamagedFileHint);
+        found->second.assign(read_count(accessor) * width, 0);
+    }
+    if (sparse) apply_sparse(accessor, *sparse, width, found->second);
+    return found->second;
+}
+
+std::vector<uint32_t> GltfFile::read_indices(const JsonNode& accessor_index) {
+    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
+    if (accessor.find("sparse")) accessor.fail("is sparse", "export it without sparse indices of faces");
+    return load_indices(find_values(accessor, 1), accessor_index);
 }
 
 } // namespace relief

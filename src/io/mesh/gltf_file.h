@@ -38,6 +38,12 @@ class GltfFile {
   private:
     struct Values;
     Values find_values(const JsonNode& accessor, size_t width);
+    /// Those of which `place` says view and offset.
+    Values locate(const JsonNode& place, const JsonNode& component_type, size_t count, size_t width);
+    static std::vector<float> load_floats(const Values& values);
+    static std::vector<uint32_t> load_indices(const Values& values, const JsonNode& place);
+    void apply_sparse(const JsonNode& accessor, const JsonNode& sparse, size_t width,
+                      std::vector<float>& floats);
     std::string_view find_view(const JsonNode& view);
     std::string_view find_buffer(const JsonNode& index);
     std::string load_buffer(const JsonNode& buffer) const;

@@ -1,6 +1,8 @@
 #include "io/mesh/gltf_primitive.h"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -79,7 +81,47 @@ size_t count_uv_sets(const JsonNode& attributes) {
     return count;
 }
 
+/// 3 numbers of each vertex grow by `weight` times those of a target.
+void add_target(std::vector<float>& values, size_t width, std::span<const float> target, float weight) {
+    for (size_t k = 0; k < target.size(); ++k) values[k / 3 * width + k % 3] += weight * target[k];
+}
+
 } // namespace
+
+void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part) {
+    const auto targets = primitive.find("targets");
+    if (!targets) return;
+    for (const JsonNode& target : targets->elements()) {
+        const auto read = [&](const char* key, std::span<const float> base) {
+            const auto index = target.find(key);
+            if (!index || base.empty()) return std::span<const float>();
+            const std::span<const float> values = file.read_floats(*index, 3);
+            if (values.size() != part.positions.size())
+                index->fail(
+                    fmt::format("{} values for {} vertices", values.size() / 3, part.positions.size() / 3),
+                    kDamagedHint);
+            return values;
+        };
+        part.targets.push_back(
+            {read("POSITION", part.positions), read("NORMAL", part.normals), read("TANGENT", part.tangents)});
+    }
+}
+
+MorphedPrimitive::MorphedPrimitive(const GltfPrimitive& part, const std::vector<float>& weights)
+    : part_(part) {
+    const size_t count = std::min(weights.size(), part.targets.size());
+    if (std::all_of(weights.begin(), weights.begin() + ptrdiff_t(count), [](float w) { return w == 0; }))
+        return;
+    positions_.assign(part.positions.begin(), part.positions.end());
+    normals_.assign(part.normals.begin(), part.normals.end());
+    tangents_.assign(part.tangents.begin(), part.tangents.end());
+    for (size_t k = 0; k < count; ++k) {
+        add_target(positions_, 3, part.targets[k].positions, weights[k]);
+        add_target(normals_, 3, part.targets[k].normals, weights[k]);
+        add_target(tangents_, 4, part.targets[k].tangents, weights[k]);
+    }
+    part_.positions = positions_, part_.normals = normals_, part_.tangents = tangents_;
+}
 
 GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set) {
     GltfPrimitive part;

@@ -16,11 +16,33 @@ struct GltfPrimitive {
     std::span<const float> positions, normals; ///< 3 a vertex
     std::span<const float> uvs;                ///< 2 a vertex, v downwards
     std::span<const float> tangents;           ///< 4 a vertex
+    /// What a morph target adds to each vertex, 3 numbers a vertex; empty where it adds nothing.
+    struct Target {
+        std::span<const float> positions, normals, tangents;
+    };
+    std::vector<Target> targets;
     std::vector<uint32_t> face_sizes, corners;
     size_t uv_set_count = 0; ///< TEXCOORD_0 and so on that the part has
 };
 
-/// Points and lines have no faces. Throws bad_input.
+/// Points and lines have no faces; targets are left out. Throws bad_input.
 GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set);
+
+/// Adds the morph targets to a part. Throws bad_input.
+void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part);
+
+/// A part with its morph targets added, by a weight each; what the weights leave out adds nothing.
+class MorphedPrimitive {
+  public:
+    MorphedPrimitive(const GltfPrimitive& part, const std::vector<float>& weights);
+    MorphedPrimitive(const MorphedPrimitive&) = delete;
+    MorphedPrimitive& operator=(const MorphedPrimitive&) = delete;
+
+    const GltfPrimitive& get() const { return part_; }
+
+  private:
+    GltfPrimitive part_;
+    std::vector<float> positions_, normals_, tangents_;
+};
 
 } // namespace relief

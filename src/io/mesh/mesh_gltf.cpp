@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "formulas/basis.h"
 #include "io/foreign_files.h"
+#include "io/mesh/gltf_animation.h"
 #include "io/mesh/gltf_primitive.h"
 #include "io/mesh/welder.h"
 #include "math/affine.h"
@@ -33,12 +35,18 @@ Affine read_node_matrix(const JsonNode& node) {
     return result;
 }
 
-/// Rotation by a quaternion x, y, z, w, which need not have length 1.
-Affine read_rotation(const JsonNode& node) {
+/// A quaternion x, y, z, w, which need not have length 1.
+std::array<double, 4> read_quaternion(const JsonNode& node) {
     const std::vector<JsonNode> values = node.elements();
     if (values.size() != 4) node.fail(fmt::format("must be 4 numbers, not {}", values.size()), kDamagedHint);
-    double q[4], square = 0;
-    for (size_t k = 0; k < 4; ++k) q[k] = double(values[k].as_float()), square += q[k] * q[k];
+    std::array<double, 4> q;
+    for (size_t k = 0; k < 4; ++k) q[k] = double(values[k].as_float());
+    return q;
+}
+
+Affine make_rotation(const std::array<double, 4>& q, const JsonNode& node) {
+    double square = 0;
+    for (const double part : q) square += part * part;
     if (!(square > 0)) node.fail("has no length", kDamagedHint);
     const double s = 2 / square, x = q[0], y = q[1], z = q[2], w = q[3];
     Affine result;
@@ -48,13 +56,31 @@ Affine read_rotation(const JsonNode& node) {
     return result;
 }
 
-Affine read_transform(const JsonNode& node) {
-    if (const auto matrix = node.find("matrix")) return read_node_matrix(*matrix);
+/// Of a node, as an animation moves it.
+Affine read_transform(const JsonNode& node, const GltfPose& pose) {
+    if (const auto matrix = node.find("matrix")) return read_node_matrix(*matrix); // which nothing moves
     Affine result;
-    if (const auto scale = node.find("scale")) result = make_scale(scale->as_vec3());
-    if (const auto rotation = node.find("rotation")) result = compose(read_rotation(*rotation), result);
-    if (const auto offset = node.find("translation")) result.translation = offset->as_vec3();
+    const auto scale = node.find("scale"), rotation = node.find("rotation"),
+               translation = node.find("translation");
+    if (pose.scale || scale) result = make_scale(pose.scale ? *pose.scale : scale->as_vec3());
+    if (pose.rotation)
+        result = compose(make_rotation(*pose.rotation, node), result);
+    else if (rotation)
+        result = compose(make_rotation(read_quaternion(*rotation), *rotation), result);
+    if (pose.translation || translation)
+        result.translation = pose.translation ? *pose.translation : translation->as_vec3();
     return result;
+}
+
+/// Of morph targets: the animation's, the node's, or the mesh's.
+std::vector<float> read_weights(const JsonNode& node, const JsonNode& mesh, const GltfPose& pose) {
+    if (pose.weights) return *pose.weights;
+    auto list = node.find("weights");
+    if (!list) list = mesh.find("weights");
+    std::vector<float> weights;
+    if (list)
+        for (const JsonNode& weight : list->elements()) weights.push_back(weight.as_float());
+    return weights;
 }
 
 /// Carries vectors of an object into the world, also where its transform flattens it.
@@ -88,16 +114,23 @@ class GltfBuilder {
           meshes_(file.list("meshes")),
           positions_(mesh_.positions),
           normals_(mesh_.normals),
-          uvs_(mesh_.uvs) {}
+          uvs_(mesh_.uvs) {
+        if (!options.animation.empty()) poses_ = read_gltf_poses(file, options.animation, options.time);
+    }
 
     Mesh build() {
         check_extensions();
         find_instances();
-        for (const Instance& instance : instances_) read_parts(*instance.mesh);
+        std::set<const JsonNode*> morphed; // of others targets are not read
+        for (const Instance& instance : instances_)
+            if (std::ranges::any_of(instance.weights, [](float weight) { return weight != 0; }))
+                morphed.insert(instance.mesh);
+        for (const Instance& instance : instances_)
+            read_parts(*instance.mesh, morphed.contains(instance.mesh) ? Targets::read : Targets::left_out);
         check_uvs();
         for (const Instance& instance : instances_)
             for (const GltfPrimitive& part : parts_.at(instance.mesh))
-                add_part(part, instance.world_from_node);
+                add_part(MorphedPrimitive(part, instance.weights).get(), instance.world_from_node);
         return std::move(mesh_);
     }
 
@@ -105,6 +138,7 @@ class GltfBuilder {
     struct Instance {
         const JsonNode* mesh;
         Affine world_from_node;
+        std::vector<float> weights; ///< of morph targets
     };
 
     [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
@@ -159,9 +193,13 @@ class GltfBuilder {
             const auto index = size_t(item.node - nodes_.data());
             if (is_seen[index]) item.node->fail("stands twice in the tree of nodes", kDamagedHint);
             is_seen[index] = true;
-            const Affine world_from_node = compose(item.world_from_parent, read_transform(*item.node));
-            if (const auto mesh = item.node->find("mesh"))
-                instances_.push_back({&GltfFile::resolve(*mesh, meshes_, "mesh"), world_from_node});
+            const auto posed = poses_.find(index);
+            const GltfPose pose = posed == poses_.end() ? GltfPose{} : posed->second;
+            const Affine world_from_node = compose(item.world_from_parent, read_transform(*item.node, pose));
+            if (const auto mesh_index = item.node->find("mesh")) {
+                const JsonNode& mesh = GltfFile::resolve(*mesh_index, meshes_, "mesh");
+                instances_.push_back({&mesh, world_from_node, read_weights(*item.node, mesh, pose)});
+            }
             const auto children = item.node->find("children");
             if (!children) continue;
             const std::vector<JsonNode> indices = children->elements();
@@ -170,7 +208,8 @@ class GltfBuilder {
         }
         if (file_.list("scenes").empty()) check_all_seen(is_seen);
         if (nodes_.empty()) // a library of meshes
-            for (const JsonNode& mesh : meshes_) instances_.push_back({&mesh, {}});
+            for (const JsonNode& mesh : meshes_)
+                instances_.push_back({&mesh, {}, read_weights(mesh, mesh, {})});
     }
 
     /// A node below none of the roots has only itself above it.
@@ -180,12 +219,15 @@ class GltfBuilder {
             nodes_[size_t(unseen - is_seen.begin())].fail("is a descendant of itself", kDamagedHint);
     }
 
-    void read_parts(const JsonNode& mesh) {
+    enum class Targets { left_out, read };
+
+    void read_parts(const JsonNode& mesh, Targets targets) {
         const auto [found, is_new] = parts_.try_emplace(&mesh);
         if (!is_new) return;
         for (const JsonNode& primitive : mesh.get("primitives").elements()) {
             GltfPrimitive part = read_gltf_primitive(file_, primitive, uv_set_);
             if (part.face_sizes.empty()) continue;
+            if (targets == Targets::read) read_gltf_targets(file_, primitive, part);
             with_uv_ += part.uvs.empty() ? 0 : 1;
             most_uv_sets_ = std::max(most_uv_sets_, part.uv_set_count);
             if (part.normals.empty()) has_normals_ = false;
@@ -264,6 +306,7 @@ class GltfBuilder {
     Mesh mesh_;
     PointWelder positions_, normals_;
     UvWelder uvs_;
+    std::map<size_t, GltfPose> poses_; ///< of nodes that an animation moves
     std::vector<Instance> instances_;
     std::map<const JsonNode*, std::vector<GltfPrimitive>> parts_; ///< of meshes, each read once
     std::vector<Corner> corners_;                                 ///< by vertex

@@ -22,10 +22,15 @@ constexpr std::array<std::string_view, 5> kMeshExtensions = {".obj", ".ply", ".g
 
 Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
     const std::string extension = get_extension(file), name = file.string();
+    const bool is_gltf = extension == ".gltf" || extension == ".glb";
+    if (!options.animation.empty() && !is_gltf)
+        throw Error(ErrorKind::bad_input,
+                    {"only animations of glTF files are read", name,
+                     "export it as glTF, or write a file for each frame and name them with ####"});
     if (extension == ".fbx")
         return options.reader.program.empty() ? read_assimp_mesh(file, options)
                                               : read_mesh_in_child(file, options);
-    if (extension == ".gltf" || extension == ".glb") {
+    if (is_gltf) {
         const auto read_beside = [&file](const std::string& path) {
             const std::filesystem::path other = file.parent_path() / path;
             require_file(other);

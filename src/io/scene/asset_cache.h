@@ -98,7 +98,11 @@ class AssetCache {
     using TextureKey = std::tuple<std::string, TextureUse, uint32_t, std::string>;
     SceneAssets given_;
     std::map<TextureKey, Kept<Texture>> textures_;
-    std::map<std::pair<std::string, int>, Kept<Mesh>> meshes_; ///< by name and uv set
+    using MeshKey = std::tuple<std::string, int, std::string, double>;
+    MeshKey make_key(const std::string& file, const MeshReadOptions& options) const {
+        return {resolve(file).string(), options.uv_set, options.animation, options.time};
+    }
+    std::map<MeshKey, Kept<Mesh>> meshes_;
     std::map<std::string, SequenceFiles> sequences_;
     Seen finite_;
     int64_t frame_ = 1;

@@ -52,6 +52,15 @@ NameIndex read_section(const JsonNode& root, std::string_view key, std::vector<I
     return index;
 }
 
+void read_animation(const JsonNode& node, MeshReadOptions& options) {
+    const auto animation = node.find("animation"), time = node.find("time");
+    if (animation)
+        options.animation = animation->is_string() ? animation->as_string()
+                                                   : std::to_string(animation->as_integer(0, INT32_MAX));
+    if (time && !animation) time->fail("is that of an animation, and none is named", "add 'animation'");
+    if (time) options.time = double(time->as_float());
+}
+
 /// From memory or a file.
 Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSettings& reader) {
     const JsonNode file = node.get("file");
@@ -65,6 +74,7 @@ Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSet
     MeshReadOptions options;
     options.reader = reader;
     if (uv_set) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
+    read_animation(node, options);
     return file.with_place([&] { return assets.load_polygons(file_name, options); });
 }
 

@@ -66,7 +66,7 @@ std::vector<MapTile> AssetCache::load_blend(const SequenceFiles& files) {
 
 std::shared_ptr<const Mesh> AssetCache::load_kept(const std::string& file, const MeshReadOptions& options,
                                                   int64_t frame) {
-    Kept<Mesh>& kept = meshes_[{resolve(file).string(), options.uv_set}];
+    Kept<Mesh>& kept = meshes_[make_key(file, options)];
     kept.frame = frame;
     if (!kept.value) {
         auto mesh = std::make_shared<const Mesh>(load_mesh(resolve(file), options));
@@ -82,7 +82,7 @@ Mesh AssetCache::load_polygons(const std::string& file, const MeshReadOptions& o
         const auto second = load_kept(files->second, options, files->second_number);
         return blend_meshes(*first, *second, files->weight);
     }
-    const auto known = meshes_.find({resolve(file).string(), options.uv_set});
+    const auto known = meshes_.find(make_key(file, options));
     const bool is_kept = known != meshes_.end() && known->second.value;
     const auto sequence = sequences_.find(file);
     if (sequence == sequences_.end() || !(keeps_meshes_ || is_kept)) return load_mesh(resolve(file), options);
