@@ -51,6 +51,12 @@ Scene make_named_scene(const SceneOptions& options, const ProgressFunction& on_p
     return make_peer_scene(options.name, 1, PeerWorld::sky);
 }
 
+SceneMotion make_named_motion(const SceneOptions& options, const ProgressFunction& on_progress) {
+    const std::vector<std::string> samples = sample_scene_names();
+    const bool is_sample = std::find(samples.begin(), samples.end(), options.name) != samples.end();
+    return is_sample ? make_sample_motion(options.name, on_progress) : SceneMotion{};
+}
+
 /// Contents of a file; empty if it does not exist.
 std::string read_text(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -76,7 +82,9 @@ int run_scene(const SceneOptions& options) {
     {
         constexpr double kMade = 0.7;
         WorkProgress progress(options.progress);
-        save_scene(make_named_scene(options, progress.part(0, kMade)), folder, progress.part(kMade, 1));
+        const Scene scene = make_named_scene(options, progress.part(0, kMade / 2));
+        const SceneMotion motion = make_named_motion(options, progress.part(kMade / 2, kMade));
+        save_shot(scene, motion, folder, progress.part(kMade, 1));
     }
     if (before == read_text(file))
         std::filesystem::remove(copy);

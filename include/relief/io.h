@@ -150,6 +150,11 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
 void save_scene(const Scene& scene, const std::filesystem::path& folder,
                 const ProgressFunction& on_progress = {});
 
+/// The same for a scene that moves: values become keys, maps files with the numbers of their frames. Throws
+/// also Error{usage} for lists of other lengths and for unknown names.
+void save_shot(const Scene& scene, const SceneMotion& motion, const std::filesystem::path& folder,
+               const ProgressFunction& on_progress = {});
+
 /// What of a scene differs from the file that it was read from, beside what aim_scene changes.
 struct SceneChanges {
     std::set<std::string> displacements; ///< names: all of their conventions are written, presets resolved

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -356,8 +357,8 @@ struct Light {
 struct PictureDefaults {
     std::optional<int> width, height, spp, bounces;
     std::optional<uint32_t> seed;
-};
     std::optional<float> fps; ///< frames a second, > 0; for other programs
+};
 
 struct Scene {
     std::vector<Mesh> meshes;
@@ -380,6 +381,24 @@ struct SceneUpdate {
     std::optional<Scene> scene;
     Camera camera;
     uint64_t scene_hash = 0; ///< of all that is to be seen then, as Scene::hash
+};
+
+/// What changes in a scene from frame to frame: lists have a value a frame.
+struct SceneMotion {
+    int first_frame = 1;
+    size_t frame_count = 0; ///< 0: nothing moves
+    /// Scales, then turns about x, y and z, then moves.
+    struct Placement {
+        Vec3f translate, rotate_degrees, scale{1, 1, 1};
+    };
+    struct View {
+        double frame = 1;
+        Vec3f from, to;
+    };
+    std::map<std::string, std::vector<Placement>> objects; ///< by name; in place of their transforms
+    std::map<std::string, std::vector<std::shared_ptr<const Texture>>>
+        maps;                ///< of displacements by name, which have one tile
+    std::vector<View> views; ///< of the camera, at some frames and smooth between them; empty: it stays
 };
 
 /// Checks all indices and ranges, and that values are finite. Throws Error{bad_input} naming the offending

@@ -7,6 +7,7 @@
 #include "samples/materials.h"
 #include "samples/noise.h"
 #include "samples/party.h"
+#include "samples/shot.h"
 #include "samples/stage.h"
 
 namespace relief {
@@ -89,7 +90,8 @@ using Maker = Scene (*)(Instancing, const ProgressFunction&);
 
 constexpr std::pair<const char*, Maker> kScenes[] = {
     {"pumpkin", make_pumpkin_scene}, {"bark", make_bark_scene}, {"barks", make_barks_scene},
-    {"party", make_party_scene},     {"ear", make_ear_scene},   {"materials", make_materials_scene}};
+    {"party", make_party_scene},     {"ear", make_ear_scene},   {"materials", make_materials_scene},
+    {"shot", make_shot_scene}};
 
 } // namespace
 
@@ -99,13 +101,25 @@ std::vector<std::string> sample_scene_names() {
     return names;
 }
 
-Scene make_sample_scene(const std::string& name, Instancing instancing, const ProgressFunction& on_progress) {
+namespace {
+
+Maker find_maker(const std::string& name) {
     std::string known;
     for (const auto& [candidate, maker] : kScenes) {
-        if (name == candidate) return maker(instancing, on_progress);
+        if (name == candidate) return maker;
         known += (known.empty() ? "" : ", ") + std::string(candidate);
     }
     throw Error(ErrorKind::usage, {"there is no sample scene of this name", name, "known are " + known});
+}
+
+} // namespace
+
+Scene make_sample_scene(const std::string& name, Instancing instancing, const ProgressFunction& on_progress) {
+    return find_maker(name)(instancing, on_progress);
+}
+
+SceneMotion make_sample_motion(const std::string& name, const ProgressFunction& on_progress) {
+    return find_maker(name) == make_shot_scene ? make_shot_motion(on_progress) : SceneMotion{};
 }
 
 } // namespace relief

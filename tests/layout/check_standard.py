@@ -23,6 +23,7 @@ DECLARED = {
     "cmath": """abs acos asin atan atan2 cbrt ceil copysign cos exp exp2 fabs floor fma fmax fmin fmod frexp hypot ilogb isfinite
         isinf isnan isnormal ldexp log log10 log2 lround nanf nextafter pow round signbit sin sqrt tan trunc""",
     "compare": "partial_ordering",
+    "complex": "complex conj norm polar",
     "concepts": "floating_point integral same_as",
     "condition_variable": "condition_variable",
     "csignal": "sig_atomic_t signal",

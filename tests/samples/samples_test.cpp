@@ -111,7 +111,7 @@ TEST(SampleScenes, of_materials_show_twelve_of_them_on_one_displaced_body) {
 
 TEST(SampleScenes, names_are_known_and_others_refused) {
     EXPECT_EQ(sample_scene_names(),
-              (std::vector<std::string>{"pumpkin", "bark", "barks", "party", "ear", "materials"}));
+              (std::vector<std::string>{"pumpkin", "bark", "barks", "party", "ear", "materials", "shot"}));
     try {
         make_sample_scene("pumpkn", Instancing::none);
         FAIL() << "an unknown name must be refused";

@@ -24,6 +24,16 @@ Json write_picture(const PictureDefaults& picture) {
     return node;
 }
 
+Json write_matrix(const Affine& m) {
+    Json matrix = Json::array();
+    const float offsets[] = {m.translation.x, m.translation.y, m.translation.z};
+    for (size_t r = 0; r < 3; ++r)
+        for (const float value : {m.rows[r].x, m.rows[r].y, m.rows[r].z, offsets[r]})
+            matrix.push_back(to_json(value));
+    for (const int value : {0, 0, 0, 1}) matrix.push_back(value);
+    return matrix;
+}
+
 Json write_camera(const Camera& camera) {
     Json node = {{"from", to_json(camera.from)},
                  {"to", to_json(camera.to)},

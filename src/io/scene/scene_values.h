@@ -12,6 +12,8 @@ Json to_json(const Vec3f& v);
 
 /// What is set of it; an empty object where nothing is.
 Json write_picture(const PictureDefaults& picture);
+/// 16 numbers, row after row.
+Json write_matrix(const Affine& matrix);
 Json write_camera(const Camera& camera);
 Json write_light(const Light& light);
 /// What of base, coat, fuzz and glass differs from a material that only has a base colour, roughness,

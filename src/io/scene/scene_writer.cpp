@@ -10,6 +10,8 @@
 #include "io/mesh/mesh_writer.h"
 #include "io/picture/image_coders.h"
 #include "io/scene/json_node.h"
+#include "io/scene/keyed_values.h"
+#include "io/scene/motion_json.h"
 #include "io/scene/scene_values.h"
 #include "io/scene/subdivision_json.h"
 #include "relief/error.h"
@@ -76,8 +78,12 @@ void check_steps(const Displacement& map) {
 
 class SceneWriter {
   public:
-    SceneWriter(const Scene& scene, std::filesystem::path folder, const ProgressFunction& on_progress)
-        : scene_(scene), folder_(std::move(folder)), progress_(on_progress, count_work(scene)) {}
+    SceneWriter(const Scene& scene, const SceneMotion& motion, std::filesystem::path folder,
+                const ProgressFunction& on_progress)
+        : scene_(scene),
+          motion_(motion),
+          folder_(std::move(folder)),
+          progress_(on_progress, count_work(scene, motion)) {}
 
     void write() {
         for (const char* name : {"meshes", "maps"}) {
@@ -100,7 +106,7 @@ class SceneWriter {
     static uint64_t count_texels(const Texture& texture) { return uint64_t(texture.width) * texture.height; }
 
     /// Texels, and vertices counted as texels.
-    static uint64_t count_work(const Scene& scene) {
+    static uint64_t count_work(const Scene& scene, const SceneMotion& motion) {
         std::set<const Texture*> textures;
         if (scene.environment) textures.insert(scene.environment->texture.get());
         for (const Light& light : scene.lights) textures.insert(light.color_texture.get());
@@ -109,7 +115,10 @@ class SceneWriter {
                 textures.insert(texture.get());
             });
         for (const Displacement& map : scene.displacements)
-            for (const MapTile& tile : map.tiles) textures.insert(tile.texture.get());
+            for (const MapTile& tile : map.tiles)
+                if (!motion.maps.contains(map.name)) textures.insert(tile.texture.get());
+        for (const auto& [name, maps] : motion.maps)
+            for (const auto& map : maps) textures.insert(map.get());
         textures.erase(nullptr);
         uint64_t work = 0;
         for (const Texture* texture : textures) work += count_texels(*texture);
@@ -141,9 +150,15 @@ class SceneWriter {
 
     void add_picture() {
         if (Json node = write_picture(scene_.picture); !node.empty()) root_["render"] = std::move(node);
+        if (motion_.frame_count > 0)
+            root_["render"]["frames"] =
+                fmt::format("{}-{}", motion_.first_frame, motion_.first_frame + int(motion_.frame_count) - 1);
     }
 
-    void add_camera() { root_["camera"] = write_camera(scene_.camera); }
+    void add_camera() {
+        root_["camera"] = write_camera(scene_.camera);
+        if (!motion_.views.empty()) write_views(motion_, root_["camera"]);
+    }
 
     void add_environment() {
         if (!scene_.environment) return;
@@ -186,6 +201,15 @@ class SceneWriter {
         return stem + ".<UDIM>.exr";
     }
 
+    std::string add_sequence(const std::vector<std::shared_ptr<const Texture>>& maps,
+                             const std::string& name) {
+        const std::string pattern = "maps/" + map_names_.make_unique(make_file_stem(name)) + ".####.exr";
+        int frame = motion_.first_frame;
+        for (const std::shared_ptr<const Texture>& map : maps)
+            write_counted(*map, folder_ / fill_frame_number(pattern, frame++));
+        return pattern;
+    }
+
     /// A texture in place of its number, which becomes its factor.
     void add_input(const Material& material, const InputTexture& texture, Json& node) {
         const MaterialInputKind& kind = get_input_kind(texture.input);
@@ -203,7 +227,10 @@ class SceneWriter {
         for (const Displacement& map : scene_.displacements) {
             displacement_names_.push_back(namer.make_unique(map.name));
             Json& node = root_["displacements"][displacement_names_.back()];
-            node["file"] = add_tiles(map.tiles, map.is_udim, displacement_names_.back());
+            const auto moving = motion_.maps.find(map.name);
+            node["file"] = moving == motion_.maps.end()
+                               ? add_tiles(map.tiles, map.is_udim, displacement_names_.back())
+                               : add_sequence(moving->second, displacement_names_.back());
             write_map_convention(map, node);
         }
     }
@@ -234,16 +261,11 @@ class SceneWriter {
                 node["displacement"] = displacement_names_.at(object.displacement);
             if (object.material != kNoIndex) node["material"] = material_names_.at(object.material);
             if (object.is_shadow_catcher) node["shadow_catcher"] = true;
-            const Affine& m = object.world_from_object;
-            if (!(m == Affine{})) {
-                Json matrix = Json::array();
-                const float offsets[] = {m.translation.x, m.translation.y, m.translation.z};
-                for (size_t r = 0; r < 3; ++r)
-                    for (const float value : {m.rows[r].x, m.rows[r].y, m.rows[r].z, offsets[r]})
-                        matrix.push_back(to_json(value));
-                for (const int value : {0, 0, 0, 1}) matrix.push_back(value);
-                node["transform"]["matrix"] = matrix;
-            }
+            const auto moving = motion_.objects.find(object.name);
+            if (moving != motion_.objects.end())
+                node["transform"] = write_placements(moving->second, motion_.first_frame);
+            else if (!(object.world_from_object == Affine{}))
+                node["transform"]["matrix"] = write_matrix(object.world_from_object);
             root_["objects"].push_back(node);
         }
     }
@@ -259,6 +281,7 @@ class SceneWriter {
     }
 
     const Scene& scene_;
+    const SceneMotion& motion_;
     std::filesystem::path folder_;
     ProgressCounter progress_;
     Json root_;
@@ -271,10 +294,16 @@ class SceneWriter {
 
 void save_scene(const Scene& scene, const std::filesystem::path& folder,
                 const ProgressFunction& on_progress) {
+    save_shot(scene, {}, folder, on_progress);
+}
+
+void save_shot(const Scene& scene, const SceneMotion& motion, const std::filesystem::path& folder,
+               const ProgressFunction& on_progress) {
     validate_scene(scene);
+    check_motion(scene, motion);
     for (const Object& object : scene.objects) check_tangents(scene, object);
     for (const Displacement& map : scene.displacements) check_steps(map);
-    SceneWriter(scene, folder, on_progress).write();
+    SceneWriter(scene, motion, folder, on_progress).write();
 }
 
 } // namespace relief
