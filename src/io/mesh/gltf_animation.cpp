@@ -88,13 +88,13 @@ Track read_track(GltfFile& file, const JsonNode& sampler, size_t width) {
         if (!std::isfinite(track.times[k]) || (k > 0 && !(track.times[k] > track.times[k - 1])))
             sampler.get("input").fail("times do not rise", kDamagedHint);
     const size_t keys = track.times.size() * (track.is_cubic ? 3 : 1);
+    const auto fail_count = [&](size_t values) {
+        sampler.fail(fmt::format("{} values for {} keys", values, track.times.size()), kDamagedHint);
+    };
     if (keys == 0 || track.values.empty() || track.values.size() % keys != 0)
-        sampler.fail(fmt::format("{} values for {} keys", track.values.size(), track.times.size()),
-                     kDamagedHint);
+        fail_count(track.values.size() / std::max<size_t>(width, 1));
     track.width = track.values.size() / keys;
-    if (width != 0 && track.width != width)
-        sampler.fail(fmt::format("{} values for {} keys", track.values.size() / width, track.times.size()),
-                     kDamagedHint);
+    if (width != 0 && track.width != width) fail_count(track.values.size() / width);
     return track;
 }
 
