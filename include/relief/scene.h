@@ -106,6 +106,7 @@ struct AxisMap {
 struct MapTile {
     int udim = 1001;
     std::shared_ptr<const Texture> texture;
+    friend bool operator==(const MapTile&, const MapTile&) = default; ///< the same image
 };
 
 /// What of a map's convention nobody said, so that a reader assumed it; for warnings only.
@@ -177,6 +178,7 @@ struct InputTexture {
     MapFilter filter = MapFilter::none; ///< not mip
     WrapMode wrap = WrapMode::repeat;   ///< outside [0, 1]^2; each tile of several ends with its own texels
     Vec2f uv_scale{1, 1}, uv_offset{0, 0};
+    friend bool operator==(const InputTexture&, const InputTexture&) = default;
 };
 
 /// OpenPBR 1.1 without subsurface: fuzz over a coat over a base, which is metal, a diffuse
@@ -233,6 +235,7 @@ struct Material {
     std::string light_group;                   ///< of what the surface emits; see is_light_group_name()
     /// Of any inputs, one each; not of one whose texture is a member.
     std::vector<InputTexture> textures;
+    friend bool operator==(const Material&, const Material&) = default; ///< with the same images
 };
 
 /// The name of an input in scene files and messages.
@@ -319,7 +322,8 @@ struct Environment {
     Vec3f color{1, 1, 1};                   ///< multiplies the texture
     float strength = 1;
     float rotate_degrees = 0;
-    std::string light_group; ///< see is_light_group_name()
+    std::string light_group;                                                  ///< see is_light_group_name()
+    friend bool operator==(const Environment&, const Environment&) = default; ///< with the same image
 };
 
 enum class LightType { sun, point, rectangle, disk, spot };

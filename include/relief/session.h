@@ -1,8 +1,9 @@
-// Interactive rendering: a scene that stays prepared between pictures while its displacement maps are edited
-// and its camera moves.
+// Interactive rendering and shots: a scene that stays prepared between pictures while its displacement maps
+// are edited, its camera moves, or time goes on.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,7 +21,15 @@ struct MapEdit {
 };
 
 /// What comes between pictures. `views`: cameras; pictures cost less then, but an edit costs a whole one.
-enum class SessionUse { edits, views };
+/// `scenes`: the scene at other times, whose maps are shared and take no edits; meshes are kept.
+enum class SessionUse { edits, views, scenes };
+
+/// The scene at a frame, which may lie between two, as it differs from that of the call before.
+using UpdateScene = std::function<SceneUpdate(double frame)>;
+
+/// When sample k of a picture of a frame sees the scene: frames, while the camera's shutter is open. Evenly
+/// spread for any run of samples: multiples of the golden ratio (Weyl 1916), the first in the middle.
+double find_sample_time(const Camera& camera, double frame, int sample);
 
 /// Cost of an edit.
 struct EditReport {
@@ -59,6 +68,20 @@ class Session {
     /// engine which failed is made anew by the next call. The picture is that of a fresh session bit for bit;
     /// where is_far_away(), up to rounding.
     void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash = 0);
+
+    /// The next picture is of the scene at another time; of a session for `scenes`. What has not changed
+    /// stays prepared, on the CPU engine's default traversal with its trees. `image` as for change_view(), as
+    /// is what the picture is bit for bit. Throws as render(), Error{usage} for another use; after other
+    /// errors the session is of no use.
+    void change_scene(SceneUpdate update, const ImageSettings& image);
+
+    /// Renders a picture with motion blur: all rays of sample k see the scene at
+    /// find_sample_time(camera, frame, k), so that the picture is the mean of still ones at these times, bit
+    /// for bit. The session shows the scene of `frame` now, and that of the last sample afterwards. Patches
+    /// that move are built for each time, others keep their trees. A picture that was cancelled has whole
+    /// samples, but for the last one, which blocks of pixels may lack. Throws as change_scene().
+    RenderResult render_moving(double frame, const UpdateScene& update, RenderObserver* observer = nullptr,
+                               const Checkpoints& checkpoints = {});
 
     /// Some object lies so far from the world's origin that places may be taken relative to the first camera.
     bool is_far_away() const;

@@ -64,6 +64,24 @@ void add_cache_warning(Statistics& statistics) {
         100 * lost / stages, statistics.bottom_rebuilt, statistics.bottom_cache_bytes >> 20));
 }
 
+/// One for each kind of rays and depth.
+void join_casts(std::vector<CastStatistics>& casts) {
+    std::vector<CastStatistics> joined;
+    for (const CastStatistics& cast : casts) {
+        const auto found = std::ranges::find_if(joined, [&](const CastStatistics& other) {
+            return other.depth == cast.depth && other.is_shadow == cast.is_shadow;
+        });
+        if (found == joined.end()) {
+            joined.push_back(cast);
+            continue;
+        }
+        found->rays += cast.rays, found->pairs += cast.pairs;
+        found->top_traversal_s += cast.top_traversal_s, found->sort_s += cast.sort_s;
+        found->bottom_build_s += cast.bottom_build_s, found->bottom_traversal_s += cast.bottom_traversal_s;
+    }
+    casts = std::move(joined);
+}
+
 /// Takes the counts and times of earlier pictures off those of an engine.
 void subtract_counted(const Statistics& counted, Statistics& statistics) {
     for (double Statistics::*const time :
@@ -108,13 +126,24 @@ std::string describe_settings(const RenderSettings& settings) {
                        surface.leaf == LeafKind::exact ? "exact" : "box");
 }
 
+void keep_counts(const Engine& engine, SessionCounts& counts) {
+    Statistics& sum = counts.replaced;
+    engine.add_statistics(sum);
+    join_casts(sum.casts);
+    for (uint64_t Statistics::*const bytes :
+         {&Statistics::geometry_bytes, &Statistics::structures_bytes, &Statistics::displacement_bytes,
+          &Statistics::bottom_cache_bytes, &Statistics::ray_buffers_bytes})
+        sum.*bytes = 0; // another engine takes their place
+}
+
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
-                        Statistics& statistics, Statistics& counted) {
-    Statistics all;
+                        Statistics& statistics, SessionCounts& counts) {
+    Statistics all = counts.replaced;
     engine.add_statistics(all);
+    join_casts(all.casts);
     const double prepare_s = statistics.prepare_s, render_s = statistics.render_s;
     statistics = all;
-    subtract_counted(std::exchange(counted, std::move(all)), statistics);
+    subtract_counted(std::exchange(counts.before, std::move(all)), statistics);
     statistics.prepare_s += prepare_s, statistics.render_s += render_s;
     statistics.threads = thread_count();
     statistics.first_image_s += statistics.prepare_s;

@@ -13,10 +13,19 @@ namespace relief {
 /// Adds counts and bytes of the scene: meshes, patches, texels.
 void count_scene(const PreparedScene& scene, Statistics& statistics);
 
-/// Adds what the engine, its film and the scene count; `prepare_s` and `render_s` are there before.
-/// `counted`: what the engine had counted for the pictures before this one; becomes what it has counted now.
+/// What a session's engines have counted.
+struct SessionCounts {
+    Statistics before;   ///< for the pictures before this one
+    Statistics replaced; ///< by engines that others have taken the place of
+};
+
+/// Keeps what an engine has counted that is about to be replaced in the middle of a picture.
+void keep_counts(const Engine& engine, SessionCounts& counts);
+
+/// Adds what the engine, its film and the scene count; `prepare_s` and `render_s` are there before. The
+/// picture is then one of those before.
 void collect_statistics(const Engine& engine, const Film& film, const PreparedScene& scene,
-                        Statistics& statistics, Statistics& counted);
+                        Statistics& statistics, SessionCounts& counts);
 
 /// An empty film for a picture. `mattes`: null without Cryptomatte layers.
 Film make_film(const ImageSettings& image, std::shared_ptr<const InstanceMattes> mattes);

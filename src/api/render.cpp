@@ -55,8 +55,8 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         statistics.render_s = timer.seconds();
         if (control.save.call) control.save.call();
 
-        Statistics counted;
-        collect_statistics(*engine, film, *prepared, statistics, counted);
+        SessionCounts counts;
+        collect_statistics(*engine, film, *prepared, statistics, counts);
         const PictureSpace space = make_picture_space(*prepared);
         // Frees their memory before the image is allocated.
         engine.reset(), prepared.reset();

@@ -1,11 +1,14 @@
 #include "relief/session.h"
 
 #include <algorithm>
+#include <optional>
+#include <ostream>
 #include <utility>
 #include <vector>
 
 #include "api/instance_mattes.h"
 #include "api/make_engine.h"
+#include "api/moving_picture.h"
 #include "api/picture_report.h"
 #include "base/machine.h"
 #include "base/parallel.h"
@@ -24,8 +27,9 @@ struct Session::Implementation {
     std::shared_ptr<const InstanceMattes> mattes;
     std::unique_ptr<SceneEditor> editor;
     std::unique_ptr<Engine> engine;
-    Statistics counted;         ///< by the engine, for the pictures so far
+    SessionCounts counts;
     std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
+    bool is_lost = false;       ///< a change of the scene has failed
 
     Implementation(Scene scene, const RenderSettings& given, SessionUse session_use)
         : layers(given.image.layers), use(session_use) {
@@ -35,7 +39,7 @@ struct Session::Implementation {
         const Timer timer;
         mattes = make_instance_mattes(scene, settings.image.layers);
         with_threads(settings.device.threads, [&] {
-            editor = std::make_unique<SceneEditor>(std::move(scene), settings);
+            editor = std::make_unique<SceneEditor>(std::move(scene), settings, use);
             start_engine();
         });
         prepare_s = timer.seconds();
@@ -43,7 +47,7 @@ struct Session::Implementation {
 
     void start_engine() {
         film.reset(), engine.reset(); // so that a device does not hold two
-        counted = {};
+        counts = {};
         engine = make_engine(editor->scene(), settings);
         if (use == SessionUse::edits) engine->expect_changes();
     }
@@ -54,9 +58,8 @@ struct Session::Implementation {
     }
 
     /// Retraces what changed since the last picture and keeps the rest.
-    bool trace_picture(RenderObserver* observer) {
+    bool trace_picture(const PictureSpace& space, RenderObserver* observer) {
         need_engine();
-        const PictureSpace space = make_picture_space(*editor->scene());
         RenderControl control(observer);
         if (film) {
             show_pictures(*film, space, control);
@@ -69,8 +72,8 @@ struct Session::Implementation {
         return is_complete;
     }
 
-    void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
-        const Timer timer;
+    /// Those of a picture to come.
+    RenderSettings check_image(const ImageSettings& image, const Camera& camera) const {
         if (image.layers != layers)
             throw Error(ErrorKind::usage,
                         {"a session keeps its layers", "image.layers", "begin another session"});
@@ -79,7 +82,12 @@ struct Session::Implementation {
         validate_settings(changed);
         validate_camera(camera);
         validate_method(changed, camera);
-        changed = complete_settings(changed, editor->scene()->has_shadow_catchers);
+        return complete_settings(changed, editor->scene()->has_shadow_catchers);
+    }
+
+    void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
+        const Timer timer;
+        const RenderSettings changed = check_image(image, camera);
         need_engine();
         settings = changed;
         film.reset();
@@ -88,7 +96,58 @@ struct Session::Implementation {
         prepare_s += timer.seconds();
     }
 
+    void change_scene(SceneUpdate update, const ImageSettings& image) {
+        check_use();
+        const Timer timer;
+        settings = check_image(image, update.camera);
+        film.reset();
+        if (update.scene) mattes = make_instance_mattes(*update.scene, settings.image.layers);
+        if (!move(std::move(update), settings.image)) start_engine();
+        prepare_s += timer.seconds();
+    }
+
+    void check_use() const {
+        if (use != SessionUse::scenes)
+            throw Error(ErrorKind::usage,
+                        {"the session is not one whose scene changes", "session", "SessionUse::scenes"});
+        if (is_lost)
+            throw Error(ErrorKind::usage, {"an error has ended the session", "session", "begin another"});
+    }
+
+    /// Puts the scene at another time in place. False: the engine does not follow.
+    bool move(SceneUpdate update, const ImageSettings& image) {
+        need_engine();
+        RenderSettings changed = settings;
+        changed.image = image;
+        if (!update.scene)
+            return engine->change_view(editor->change_view(update.camera, changed, update.scene_hash), image);
+        is_lost = true;
+        update.scene->hash = update.scene_hash;
+        const std::optional<std::vector<SurfaceChange>> changes =
+            editor->change_scene(std::move(*update.scene), changed);
+        is_lost = false;
+        return changes && engine->change_scene(*changes, image);
+    }
+
+    /// The same in the middle of a picture.
+    void move_sample(SceneUpdate update, const ImageSettings& image) {
+        if (move(std::move(update), image)) return;
+        keep_counts(*engine, counts);
+        engine.reset(); // so that a device does not hold two
+        RenderSettings changed = settings;
+        changed.image = image;
+        engine = make_engine(editor->scene(), changed);
+    }
+
+    template <class Trace> RenderResult show(RenderObserver* observer, const Trace& trace);
+
+    bool trace_moving(double frame, const UpdateScene& update, const PictureSpace& space,
+                      RenderObserver* observer, const Checkpoints& checkpoints);
+
     EditReport apply(const MapEdit& edit) {
+        if (use == SessionUse::scenes)
+            throw Error(ErrorKind::usage, {"maps of a session for scenes take no edits", "session",
+                                           "SessionUse::edits or views"});
         const Timer timer;
         const CheckedEdit checked = editor->check(edit);
         need_engine();
@@ -110,6 +169,43 @@ struct Session::Implementation {
     }
 };
 
+bool Session::Implementation::trace_moving(double frame, const UpdateScene& update, const PictureSpace& space,
+                                           RenderObserver* observer, const Checkpoints& checkpoints) {
+    const uint64_t scene_hash = editor->scene_hash();
+    const Camera camera = editor->scene()->camera;
+    const std::string identity = describe_samples(settings, scene_hash);
+    film = std::make_unique<Film>(make_film(settings.image, mattes));
+    if (checkpoints.resume) film->read(*checkpoints.resume, identity);
+    RenderControl control(observer);
+    control.save.interval_s = checkpoints.interval_s;
+    if (checkpoints.save)
+        control.save.call = [&] {
+            if (film->most_samples() > 0)
+                checkpoints.save([&](std::ostream& stream) { film->write(stream, identity); });
+        };
+    show_pictures(*film, space, control);
+    const MovingStage stage{
+        [&](int sample, const ImageSettings& image) {
+            move_sample(update(find_sample_time(camera, frame, sample)), image);
+        },
+        [&](Film& target, const RenderControl& part) { return engine->render(target, part); }};
+    try {
+        const bool is_complete = render_samples(*film, settings.image, control, stage);
+        if (control.save.call) control.save.call();
+        return is_complete;
+    } catch (...) {
+        if (control.save.call) control.save.call(); // samples are added whole
+        throw;
+    }
+}
+
+double find_sample_time(const Camera& camera, double frame, int sample) {
+    const uint32_t bits = 0x80000000u + uint32_t(sample) * 0x9e3779b9u; // of the golden ratio's fraction
+    const double share = double(bits) * 0x1p-32;
+    const double open = camera.shutter_open, close = camera.shutter_close;
+    return frame + open + (close - open) * share;
+}
+
 Session::Session(Scene scene, const RenderSettings& settings, SessionUse use)
     : implementation_(std::make_unique<Implementation>(std::move(scene), settings, use)) {}
 
@@ -117,25 +213,48 @@ Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 
-RenderResult Session::render(RenderObserver* observer) {
-    Implementation& self = *implementation_;
+/// Times `trace` and makes a picture of the film; `trace` returns whether that is complete.
+template <class Trace>
+RenderResult Session::Implementation::show(RenderObserver* observer, const Trace& trace) {
     RenderResult result;
     Statistics& statistics = result.statistics;
     const Timer total;
-    with_threads(self.settings.device.threads, [&] {
-        if (observer) observer->on_warnings(self.editor->scene()->warnings);
+    with_threads(settings.device.threads, [&] {
+        if (observer) observer->on_warnings(editor->scene()->warnings);
         const Timer timer;
-        result.is_complete = self.trace_picture(observer);
+        const PictureSpace space = make_picture_space(*editor->scene());
+        const uint64_t scene_hash = editor->scene_hash();
+        result.is_complete = trace(space);
         statistics.render_s = timer.seconds();
-        statistics.prepare_s = std::exchange(self.prepare_s, 0);
-        collect_statistics(*self.engine, *self.film, *self.editor->scene(), statistics, self.counted);
-        result.whole_samples = int(self.film->least_samples());
-        result.image = self.film->resolve(make_picture_space(*self.editor->scene()));
-        add_metadata(self.settings, self.editor->scene_hash(), result.is_complete, *self.film, result.image);
+        statistics.prepare_s = std::exchange(prepare_s, 0);
+        collect_statistics(*engine, *film, *editor->scene(), statistics, counts);
+        result.whole_samples = int(film->least_samples());
+        result.image = film->resolve(space);
+        add_metadata(settings, scene_hash, result.is_complete, *film, result.image);
     });
     statistics.total_s = statistics.prepare_s + total.seconds();
     statistics.peak_resident_bytes = peak_resident_bytes();
     return result;
+}
+
+RenderResult Session::render(RenderObserver* observer) {
+    return implementation_->show(
+        observer, [&](const PictureSpace& space) { return implementation_->trace_picture(space, observer); });
+}
+
+RenderResult Session::render_moving(double frame, const UpdateScene& update, RenderObserver* observer,
+                                    const Checkpoints& checkpoints) {
+    implementation_->check_use();
+    RenderResult result = implementation_->show(observer, [&](const PictureSpace& space) {
+        return implementation_->trace_moving(frame, update, space, observer, checkpoints);
+    });
+    implementation_->film.reset(); // of no time that a picture could go on with
+    return result;
+}
+
+void Session::change_scene(SceneUpdate update, const ImageSettings& image) {
+    with_threads(implementation_->settings.device.threads,
+                 [&] { implementation_->change_scene(std::move(update), image); });
 }
 
 EditReport Session::edit(const MapEdit& edit) {

@@ -52,6 +52,14 @@ class CpuEngine final : public Engine, private PassTracer {
         return true;
     }
 
+    bool change_scene(std::span<const SurfaceChange> changes, const ImageSettings& image) override {
+        if (!tracer_.change_scene(changes)) return false;
+        lights_.follow_scene();
+        footprints_.reset();
+        settings_.image = image;
+        return true;
+    }
+
     void expect_changes() override { expects_changes_ = !tracer_.displaced_bounds().is_empty(); }
 
     bool render(Film& film, const RenderControl& control) override {

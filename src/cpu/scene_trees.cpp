@@ -1,5 +1,6 @@
 #include "cpu/scene_trees.h"
 
+#include <algorithm>
 #include <new>
 
 #include "prepare/scene_trees.h"
@@ -11,6 +12,18 @@ namespace {
 /// A vertex takes some 10 ns, smaller boxes spare a ray some 40: it pays from a quarter of a ray a vertex.
 /// Eight times that, so that pictures of a sample or two do not pay for what they have little of.
 constexpr int64_t kRaysPerVertex = 2;
+
+/// Of a refitted tree to the one that was built: above it, it is built anew.
+constexpr double kMostGrowth = 1.5;
+
+/// Of all nodes: rays visit a node as often as its area says (Goldsmith and Salmon 1987).
+double sum_areas(const WideBvh& tree) {
+    double sum = 0;
+    for (const WideNode& node : tree.nodes)
+        for (int k = 0; k < node.child_count; ++k)
+            if (!WideNode::is_leaf(node.child[k])) sum += double(node.child_box(k).half_area());
+    return sum;
+}
 
 } // namespace
 
@@ -33,8 +46,34 @@ void SceneTreeHolder::start() {
     trees_ = make_trees(BoxSource::bounds);
 }
 
-void SceneTreeHolder::forget_levels() {
-    if (trees_->source == BoxSource::vertices) start();
+void SceneTreeHolder::follow_levels() {
+    if (trees_->source != BoxSource::vertices) return;
+    const auto is_same = [&](const Instance& instance, const std::shared_ptr<const LevelField>& levels) {
+        return instance.levels == levels || *instance.levels == *levels;
+    };
+    if (!std::ranges::equal(scene_.instances, trees_->levels, is_same)) start();
+}
+
+void SceneTreeHolder::change_scene(std::span<const SurfaceChange> changes) {
+    follow_levels();
+    const PatchBoxes boxes(scene_, kernels_, trees_->source);
+    for (const SurfaceChange& change : changes) {
+        if (!scene_.surfaces[change.surface].has_displacement) continue;
+        WideBvh& tree = trees_->surfaces[change.surface];
+        if (!change.is_replaced)
+            refit_wide_bvh(tree, change.is_changed,
+                           [&](uint32_t patch) { return boxes.find(change.surface, patch); });
+        if (change.is_replaced || sum_areas(tree) > kMostGrowth * trees_->areas[change.surface]) {
+            tree = make_surface_tree(change.surface, boxes);
+            trees_->areas[change.surface] = sum_areas(tree);
+        }
+    }
+    trees_->instances = make_instance_tree(trees_->surfaces);
+}
+
+WideBvh SceneTreeHolder::make_surface_tree(uint32_t surface, const PatchBoxes& boxes) const {
+    if (!scene_.surfaces[surface].has_displacement) return {};
+    return make_wide_bvh(build_surface_bvh(scene_.surfaces[surface], boxes.find_all(surface)));
 }
 
 std::shared_ptr<const SceneTrees> SceneTreeHolder::current() const {
@@ -71,11 +110,10 @@ std::shared_ptr<SceneTrees> SceneTreeHolder::make_trees(BoxSource source) const 
     trees->source = source;
     const PatchBoxes boxes(scene_, kernels_, source);
     for (uint32_t k = 0; k < scene_.surfaces.size(); ++k) {
-        const Surface& surface = scene_.surfaces[k];
-        trees->surfaces.push_back(surface.has_displacement
-                                      ? make_wide_bvh(build_surface_bvh(surface, boxes.find_all(k)))
-                                      : WideBvh{});
+        trees->surfaces.push_back(make_surface_tree(k, boxes));
+        trees->areas.push_back(sum_areas(trees->surfaces.back()));
     }
+    for (const Instance& instance : scene_.instances) trees->levels.push_back(instance.levels);
     trees->instances = make_instance_tree(trees->surfaces);
     return trees;
 }

@@ -17,7 +17,9 @@ namespace relief::cpu {
 struct SceneTrees {
     BoxSource source = BoxSource::bounds; ///< of the boxes of displaced patches
     std::vector<WideBvh> surfaces;        ///< one a surface, over its patches; empty without displacement
+    std::vector<double> areas;            ///< of their nodes, when each was built
     WideBvh instances;
+    std::vector<std::shared_ptr<const LevelField>> levels; ///< of the instances, that vertices are at
 
     size_t byte_count() const;
 };
@@ -40,12 +42,17 @@ class SceneTreeHolder {
     /// As Engine::apply_changes: not while rays are traced. Adds boxes of what changed, world space.
     void apply_changes(std::span<const SurfaceChange> changes, std::vector<Box>& places);
 
-    /// The levels of instances have changed: trees of vertices at the old ones are given up for those of the
-    /// bounds of maps, which hold all levels. Not while rays are traced.
-    void forget_levels();
+    /// The levels of instances may have changed: trees of vertices at other ones are given up for those of
+    /// the bounds of maps, which hold all levels. Not while rays are traced.
+    void follow_levels();
+
+    /// As Engine::change_scene: not while rays are traced. Trees of surfaces that have changed as a whole are
+    /// refitted, and built anew once their area has grown by half.
+    void change_scene(std::span<const SurfaceChange> changes);
 
   private:
     void start();
+    WideBvh make_surface_tree(uint32_t surface, const PatchBoxes& boxes) const;
     std::shared_ptr<SceneTrees> make_trees(BoxSource source) const;
     WideBvh make_instance_tree(std::span<const WideBvh> surfaces) const;
     void add_places(const SurfaceChange& change, const WideBvh& tree, std::vector<Box>& places) const;

@@ -53,6 +53,22 @@ struct Tracer::Implementation {
         trees = std::make_unique<SceneTreeHolder>(scene, *kernels, polygon_trees);
     }
 
+    /// Takes where the scene's lists are.
+    void follow_lists(const PreparedScene& scene) {
+        view.instances = scene.instances.data();
+        view.surfaces = scene.surfaces.data();
+        view.instance_count = uint32_t(scene.instances.size());
+        view.polygon_trees = polygon_trees.data();
+    }
+
+    void remove_changed(std::span<const SurfaceChange> changes) {
+        cache->remove([&](const TreeKey& key) {
+            return std::any_of(changes.begin(), changes.end(), [&](const SurfaceChange& change) {
+                return key.surface == change.surface && (change.is_replaced || change.is_changed[key.patch]);
+            });
+        });
+    }
+
     /// An only instance is entered without a look at its mask.
     bool is_hidden(uint32_t mask) const {
         return view.instance_count == 1 && (view.instances[0].visibility_mask & mask) == 0;
@@ -154,10 +170,7 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.walk = std::move(walk);
     self.make_trees(*scene_);
     self.cache = std::make_unique<PatchTreeCache>(make_limits(settings.surface), self.kernels->build_tree);
-    self.view.instances = scene_->instances.data();
-    self.view.surfaces = scene_->surfaces.data();
-    self.view.instance_count = uint32_t(scene_->instances.size());
-    self.view.polygon_trees = self.polygon_trees.data();
+    self.follow_lists(*scene_);
     self.view.cache = self.cache.get();
     self.view.leaf = settings.surface.leaf, self.view.lod = settings.surface.lod;
     self.pixel_error = settings.surface.pixel_error;
@@ -192,20 +205,29 @@ bool Tracer::apply_changes(std::span<const SurfaceChange> changes, std::vector<B
     if (!self.trees) return false;
     self.trees->apply_changes(changes, places);
     self.find_most_tree_bytes();
-    self.cache->remove([&](const TreeKey& key) {
-        return std::any_of(changes.begin(), changes.end(), [&](const SurfaceChange& change) {
-            return key.surface == change.surface && change.is_changed[key.patch];
-        });
-    });
+    self.remove_changed(changes);
     return true;
 }
 
 bool Tracer::change_view(std::span<const SurfaceChange> changes, std::vector<Box>& places) {
     Implementation& self = *implementation_;
     if (!self.trees) return false;
-    self.trees->forget_levels();
+    self.trees->follow_levels();
     self.follow_camera(*scene_);
     return apply_changes(changes, places);
+}
+
+bool Tracer::change_scene(std::span<const SurfaceChange> changes) {
+    Implementation& self = *implementation_;
+    if (!self.trees) return false;
+    self.follow_lists(*scene_);
+    for (const SurfaceChange& change : changes)
+        if (const Surface& surface = scene_->surfaces[change.surface]; !surface.has_displacement)
+            self.polygon_trees[change.surface] = build_polygon_tree(surface);
+    self.trees->change_scene(changes);
+    self.follow_camera(*scene_);
+    self.remove_changed(changes);
+    return true;
 }
 
 void Tracer::closest_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth,

@@ -64,7 +64,8 @@ struct PointScratch {
     std::vector<uint32_t> order;
 };
 
-/// Immutable but for `apply_changes` and the caches of trees. Thread safe but for `apply_changes`.
+/// Immutable but for `apply_changes`, `change_view`, `change_scene`, which are not thread safe, and the
+/// caches of trees.
 class Tracer {
   public:
     Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings& settings);
@@ -78,6 +79,9 @@ class Tracer {
 
     /// As Engine::change_view.
     bool change_view(std::span<const SurfaceChange> changes, std::vector<Box>& places);
+
+    /// As Engine::change_scene.
+    bool change_scene(std::span<const SurfaceChange> changes);
 
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void rebuild_if_worthwhile() const;

@@ -44,6 +44,13 @@ class Engine {
         return false;
     }
 
+    /// The scene's editor has put the scene at another time in its place: these surfaces have changed, and
+    /// perhaps anything but them. As change_view() else.
+    virtual bool change_scene(std::span<const SurfaceChange> changes, const ImageSettings& image) {
+        (void)changes, (void)image;
+        return false;
+    }
+
     /// Adds those of samples [settings.image.first_sample, + spp) of every pixel of the film's window that it
     /// lacks. Returns false when the observer cancelled; the film then holds what was done.
     virtual bool render(Film& film, const RenderControl& control) = 0;

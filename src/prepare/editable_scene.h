@@ -13,7 +13,4 @@ struct EditableScene {
     std::vector<std::shared_ptr<MipChain>> mips; ///< of PreparedScene::maps, where they are filtered
 };
 
-/// As prepare_scene().
-EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings, SceneOrigin origin);
-
 } // namespace relief

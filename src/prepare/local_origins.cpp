@@ -83,8 +83,8 @@ bool is_better_seen_from(const Vec3f& camera, const Point& place, double reach) 
            2 * find_length(subtract(place, to_point(camera))) < find_length(place);
 }
 
-void move_world_to_camera(PreparedScene& scene) {
-    const Vec3f origin = scene.origin = scene.camera.from;
+void move_world(Vec3f origin, PreparedScene& scene) {
+    scene.origin = origin;
     scene.camera.from = scene.camera.from - origin, scene.camera.to = scene.camera.to - origin;
     for (Light& light : scene.lights) light.position = light.position - origin;
 }
@@ -119,10 +119,11 @@ bool may_be_far_away(const PreparedScene& scene, const Vec3f& center, float reac
 
 } // namespace
 
-std::vector<Vec3f> move_meshes_to_origin(Scene& scene) {
+std::vector<Vec3f> move_meshes_to_origin(Scene& scene, std::span<const uint8_t> is_kept) {
     std::vector<Vec3f> taken_off(scene.meshes.size());
     parallel_for("move_meshes_to_origin", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
+            if (is_kept[k]) continue;
             Box box;
             for (const Vec3f& p : scene.meshes[k].positions) box.extend(p);
             if (box.is_empty() || !(find_length(box.center()) > kFar * find_length(box.extent()))) continue;
@@ -150,7 +151,8 @@ void place_instances(const Scene& scene, std::span<const Vec3f> taken_off, Scene
         prepared.has_far_objects |= is_far_away(places.back(), world_reach);
         is_camera_better |= is_better_seen_from(prepared.camera.from, places.back(), world_reach);
     }
-    if (origin == SceneOrigin::camera && is_camera_better) move_world_to_camera(prepared);
+    if (origin == SceneOrigin::camera && is_camera_better) move_world(prepared.camera.from, prepared);
+    if (origin == SceneOrigin::given && prepared.origin != Vec3f{}) move_world(prepared.origin, prepared);
     for (size_t k = 0; k < places.size(); ++k) {
         const Affine& world_from_object = scene.objects[k].world_from_object;
         Instance& instance = prepared.instances[k];

@@ -10,8 +10,8 @@
 namespace relief {
 
 /// Moves meshes that lie far from the origin of their objects there, without rounding; returns what was taken
-/// off each.
-std::vector<Vec3f> move_meshes_to_origin(Scene& scene);
+/// off each. `is_kept`: a byte a mesh, of those that are left as they are.
+std::vector<Vec3f> move_meshes_to_origin(Scene& scene, std::span<const uint8_t> is_kept);
 
 /// Transforms and reach of all instances, once their surfaces are made, and the origin of the scene.
 /// `taken_off`: of the meshes.

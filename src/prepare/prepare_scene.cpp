@@ -1,48 +1,29 @@
-#include <map>
+#include <algorithm>
 #include <set>
+#include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "formulas/mips.h"
-#include "math/affine.h"
 #include "prepare/camera_enclosure.h"
-#include "prepare/editable_scene.h"
 #include "prepare/local_origins.h"
 #include "prepare/scene_levels.h"
+#include "prepare/scene_maps.h"
+#include "prepare/scene_parts.h"
+#include "prepare/scene_surfaces.h"
 #include "prepare/scene_warnings.h"
 #include "prepare/space_warnings.h"
 #include "prepare/tessellate.h"
 #include "prepare/validate_settings.h"
 #include "relief/error.h"
-#include "surface/map/displacement_map.h"
 #include "surface/mesh/corner_tangents.h"
 #include "surface/patch/patch_mips.h"
 
 namespace relief {
 
 namespace {
-
-/// Objects that share a surface: same mesh, same displacement, and for world-space maps the same transform.
-using SurfaceKey = std::tuple<uint32_t, uint32_t, uint32_t>;
-
-SurfaceKey make_key(const Scene& scene, uint32_t object_index) {
-    const Object& object = scene.objects[object_index];
-    const bool is_world = object.displacement != kNoIndex &&
-                          scene.displacements[object.displacement].space == DisplacementSpace::world;
-    return {object.mesh, object.displacement, is_world ? object_index : kNoIndex};
-}
-
-Instance make_instance(const Object& object, uint32_t surface, uint32_t default_material) {
-    Instance instance;
-    instance.surface = surface;
-    instance.material = object.material == kNoIndex ? default_material : object.material;
-    instance.visibility_mask = object.visibility_mask;
-    instance.is_shadow_catcher = object.is_shadow_catcher;
-    return instance;
-}
 
 /// So that pictures need not look at masks.
 void check_visibility(const Scene& scene) {
@@ -54,138 +35,10 @@ void check_visibility(const Scene& scene) {
                                                "leave the object out, or set a bit"});
 }
 
-std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
-    std::set<uint32_t> meshes;
-    for (const Object& object : scene.objects)
-        if (object.displacement == displacement) meshes.insert(object.mesh);
-    std::vector<const Mesh*> list;
-    for (const uint32_t mesh : meshes) list.push_back(&scene.meshes[mesh]);
-    return list;
-}
-
-/// Coefficients in place of texels, once for each form of an image. Keeps the images alive.
-class SplineCache {
-  public:
-    std::shared_ptr<const Texture> get_or_make(const std::shared_ptr<const Texture>& texels,
-                                               const SplineForm& form) {
-        if (!texels || form.keeps_texels()) return texels;
-        Entry& entry = entries_[{texels.get(), form}];
-        if (!entry.coefficients) entry = {texels, make_spline(texels, form)};
-        return entry.coefficients;
-    }
-
-  private:
-    struct Entry {
-        std::shared_ptr<const Texture> texels, coefficients;
-    };
-    std::map<std::pair<const Texture*, SplineForm>, Entry> entries_;
-};
-
-/// Textures of materials with a smooth filter become coefficients.
-void prepare_textures(std::vector<Material>& materials) {
-    SplineCache splines;
-    for (Material& material : materials) {
-        for (InputTexture& placed : material.textures) {
-            SplineForm form = make_spline_form(placed.filter);
-            form.wrap = placed.is_udim ? WrapMode::clamp : placed.wrap;
-            for (MapTile& tile : placed.tiles) tile.texture = splines.get_or_make(tile.texture, form);
-            if (is_smooth(placed.filter)) placed.filter = MapFilter::bspline;
-        }
-        visit_own_textures(material, [&](const char*, auto& texture, MapFilter& filter) {
-            if (!is_smooth(filter)) return;
-            texture = splines.get_or_make(texture, make_spline_form(filter));
-            filter = MapFilter::bspline;
-        });
-    }
-}
-
-/// Lists the maps and their smaller copies, dilated, smooth ones as coefficients: in copies, since textures
-/// of the scene may be shared.
-void prepare_maps(Scene& scene, EditableScene& prepared) {
-    SplineCache splines;
-    for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
-        Displacement& displacement = scene.displacements[k];
-        const std::vector<const Mesh*> meshes = list_meshes(scene, k);
-        for (MapTile& tile : displacement.tiles) {
-            const void* source = tile.texture.get();
-            GutterFill gutter;
-            if (displacement.dilate && !meshes.empty()) gutter = find_gutter(displacement, tile, meshes);
-            if (!gutter.copies.empty()) {
-                auto filled = std::make_shared<Texture>(*tile.texture);
-                gutter.apply(*filled);
-                tile.texture = std::move(filled);
-            }
-            std::shared_ptr<MipChain> mips;
-            if (displacement.filter == MapFilter::mip && !meshes.empty()) {
-                const TexelRectangle all{0, 0, tile.texture->width - 1, tile.texture->height - 1};
-                if (!find_texel_range(*tile.texture, all)) refuse_bad_texel(*tile.texture, all);
-                OutsideTexels outside;
-                if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
-                mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
-            }
-            PreparedMap map;
-            map.displacement = displacement.name, map.udim = tile.udim;
-            map.texture = tile.texture, map.gutter = std::move(gutter), map.mips = mips;
-            map.form = make_spline_form(displacement);
-            map.source = source;
-            if (!map.form.keeps_texels() && !meshes.empty())
-                tile.texture = map.coefficients = splines.get_or_make(tile.texture, map.form);
-            prepared.scene->maps.push_back(std::move(map));
-            prepared.mips.push_back(std::move(mips));
-        }
-        // What the surfaces get are coefficients now.
-        if (is_smooth(displacement.filter) && !meshes.empty())
-            displacement.filter = MapFilter::bspline, displacement.dequantize = false;
-    }
-}
-
-/// Hands the copies of maps to the surfaces of their displacements.
-void share_mips(const Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
-                PreparedScene& prepared) {
-    std::vector<size_t> first_map(scene.displacements.size(), 0);
-    for (size_t k = 1; k < first_map.size(); ++k)
-        first_map[k] = first_map[k - 1] + scene.displacements[k - 1].tiles.size();
-    for (const auto& [key, surface] : surface_of_key) {
-        const uint32_t displacement = std::get<1>(key);
-        if (displacement == kNoIndex) continue;
-        std::vector<DisplacementMap::Tile>& tiles = prepared.surfaces[surface].map.tiles;
-        for (size_t k = 0; k < tiles.size(); ++k)
-            tiles[k].mips = prepared.maps[first_map[displacement] + k].mips;
-    }
-}
-
 /// Normals at vertices cannot hold what is finer than the cells between them.
 void drop_detail(PreparedScene& scene) {
     for (Surface& surface : scene.surfaces)
         for (uint32_t& word : surface.mips) word &= (1u << scalar::kDetailShift) - 1;
-}
-
-/// Frees the polygons of meshes that no later surface needs.
-void release_mesh(Scene& scene, uint32_t mesh) {
-    Mesh empty;
-    empty.name = std::move(scene.meshes[mesh].name);
-    scene.meshes[mesh] = std::move(empty);
-}
-
-/// One surface a key, in the order of first use, mesh by mesh, so that polygons can be freed.
-void make_surfaces(Scene& scene, const std::map<SurfaceKey, uint32_t>& surface_of_key,
-                   const std::vector<uint32_t>& first_object, std::vector<Surface>& surfaces) {
-    std::vector<std::vector<uint32_t>> surfaces_of_mesh(scene.meshes.size());
-    for (const auto& [key, surface] : surface_of_key) surfaces_of_mesh[std::get<0>(key)].push_back(surface);
-    PyramidCache pyramids;
-    surfaces.resize(surface_of_key.size());
-    parallel_for("make_surfaces", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t mesh = begin; mesh < end; ++mesh) {
-            for (const uint32_t surface : surfaces_of_mesh[mesh]) {
-                const Object& object = scene.objects[first_object[surface]];
-                const Displacement* displacement =
-                    object.displacement == kNoIndex ? nullptr : &scene.displacements[object.displacement];
-                surfaces[surface] = make_surface(scene.meshes[mesh], displacement,
-                                                 *invert(object.world_from_object), &pyramids);
-            }
-            release_mesh(scene, uint32_t(mesh));
-        }
-    });
 }
 
 /// Of the surfaces that some normal map or material with a direction lies on.
@@ -215,6 +68,108 @@ Terminators find_terminators(const PreparedScene& scene) {
     return has(false) ? Terminators::polygons : Terminators::none;
 }
 
+void prepare_materials(std::vector<Material> materials, PreparedScene& prepared) {
+    prepared.materials = std::move(materials);
+    prepare_textures(prepared.materials);
+    prepared.materials.emplace_back();
+    for (Material& material : prepared.materials)
+        material.base_color = material.base_color * std::exchange(material.base_weight, 1.0f);
+    prepared.has_cut_outs = std::ranges::any_of(
+        prepared.materials, [](const Material& m) { return is_cut_out(m) || is_clear_wall(m); });
+    prepared.has_normal_maps = std::ranges::any_of(prepared.materials, has_normal_map);
+    prepared.has_anisotropy = std::ranges::any_of(prepared.materials, is_anisotropic);
+    prepared.textured = make_textured_materials(prepared.materials);
+    prepared.layers = make_material_layers(prepared.materials, prepared.textured);
+    prepared.glass = make_material_glass(prepared.materials);
+}
+
+/// The same of equal ones.
+void take_over_materials(PreparedScene& before, PreparedScene& prepared) {
+    prepared.materials = std::move(before.materials);
+    prepared.has_cut_outs = before.has_cut_outs, prepared.has_normal_maps = before.has_normal_maps;
+    prepared.has_anisotropy = before.has_anisotropy;
+    prepared.textured = std::move(before.textured), prepared.layers = std::move(before.layers);
+    prepared.glass = std::move(before.glass);
+}
+
+void prepare_lights(Scene& scene, const std::vector<std::string>& layers, PreparedScene& prepared) {
+    prepared.links = make_light_links(scene);
+    prepared.lights = std::move(scene.lights);
+    prepared.environment = std::move(scene.environment);
+    prepared.light_groups = make_light_groups(
+        {prepared.materials, prepared.lights, prepared.environment ? &*prepared.environment : nullptr},
+        layers);
+}
+
+/// Everything of a scene that is not tessellated. `before` may be null, `polygons` is then what becomes of
+/// those of the scene.
+std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& settings, SceneOrigin origin,
+                                         SceneParts* before, Polygonal polygons, SceneParts& parts) {
+    PreparedScene& prepared = *parts.prepared.scene;
+    const SameParts same = find_same_parts(scene, before);
+    validate_scene(scene);
+    check_visibility(scene);
+    prepared.warnings = std::move(scene.warnings);
+    // Before anything else is moved out of the scene.
+    for (std::string& warning : find_scene_warnings(scene)) prepared.warnings.push_back(std::move(warning));
+    if (polygons == Polygonal::keep) {
+        parts.materials = scene.materials, parts.displacements = scene.displacements;
+        parts.users = list_users(scene);
+    }
+    if (same.materials)
+        take_over_materials(*before->prepared.scene, prepared);
+    else
+        prepare_materials(std::move(scene.materials), prepared);
+    prepare_lights(scene, settings.image.layers, prepared);
+    prepared.camera = scene.camera;
+    prepared.mesh_count = uint32_t(scene.meshes.size());
+    prepared.width = settings.image.width, prepared.height = settings.image.height;
+
+    const SurfaceList list =
+        list_surfaces(scene, uint32_t(prepared.materials.size()) - 1, prepared.instances);
+    prepared.has_shadow_catchers = has_shadow_catchers(scene);
+    parts.taken_off = move_meshes_to_origin(scene, same.meshes);
+    for (size_t k = 0; k < same.meshes.size(); ++k)
+        if (same.meshes[k]) parts.taken_off[k] = before->taken_off[k];
+    prepare_maps(scene, same, before, parts.prepared);
+    std::vector<SurfaceChange> changes =
+        make_surfaces(scene, list, same, before, polygons, prepared.surfaces);
+    share_mips(scene, list.numbers, prepared);
+    add_tangents(prepared);
+    if (before) prepared.origin = before->prepared.scene->origin;
+    place_instances(scene, parts.taken_off, before ? SceneOrigin::given : origin, prepared);
+    parts.surfaces = list.numbers;
+    if (polygons == Polygonal::keep) parts.meshes = std::move(scene.meshes);
+    return changes;
+}
+
+/// Levels, and what follows from them.
+void finish_levels(const RenderSettings& settings, PreparedScene& prepared) {
+    update_scene_levels(prepared, settings);
+    for (uint32_t surface = 0; surface < prepared.surfaces.size(); ++surface)
+        prepared.surfaces[surface].mips = choose_scene_mips(prepared, surface);
+    prepared.may_enclose_camera = may_enclose_camera(prepared);
+    prepared.terminators = find_terminators(prepared);
+}
+
+/// Patches whose displacement has not changed, but the copy of the map that they read.
+void mark_other_mips(std::span<const std::vector<uint32_t>> before, const PreparedScene& prepared,
+                     std::vector<SurfaceChange>& changes) {
+    for (SurfaceChange& change : changes) {
+        const std::vector<uint32_t>& now = prepared.surfaces[change.surface].mips;
+        const std::vector<uint32_t>& then = before[change.surface];
+        if (change.is_replaced || now == then) continue;
+        change.is_changed.resize(prepared.surfaces[change.surface].patch_count());
+        for (size_t patch = 0; patch < change.is_changed.size(); ++patch)
+            change.is_changed[patch] |= then.size() != now.size() || then[patch] != now[patch];
+    }
+}
+
+void add_space_warnings(PreparedScene& prepared) {
+    for (std::string& warning : find_space_warnings(prepared))
+        prepared.warnings.push_back(std::move(warning));
+}
+
 } // namespace
 
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface) {
@@ -224,70 +179,52 @@ std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t sur
     return choose_mips(scene.surfaces[surface], levels);
 }
 
-EditableScene prepare_editable_scene(Scene scene, const RenderSettings& settings, SceneOrigin origin) {
-    validate_scene(scene);
-    check_visibility(scene);
-    auto prepared = std::make_shared<PreparedScene>();
-    EditableScene editable{prepared, {}};
-    prepared->warnings = std::move(scene.warnings);
-    // Before anything else is moved out of the scene.
-    for (std::string& warning : find_scene_warnings(scene)) prepared->warnings.push_back(std::move(warning));
-    prepared->materials = std::move(scene.materials);
-    prepare_textures(prepared->materials);
-    prepared->materials.emplace_back();
-    for (Material& material : prepared->materials)
-        material.base_color = material.base_color * std::exchange(material.base_weight, 1.0f);
-    prepared->has_cut_outs = std::ranges::any_of(
-        prepared->materials, [](const Material& m) { return is_cut_out(m) || is_clear_wall(m); });
-    prepared->has_normal_maps = std::ranges::any_of(prepared->materials, has_normal_map);
-    prepared->has_anisotropy = std::ranges::any_of(prepared->materials, is_anisotropic);
-    prepared->textured = make_textured_materials(prepared->materials);
-    prepared->layers = make_material_layers(prepared->materials, prepared->textured);
-    prepared->glass = make_material_glass(prepared->materials);
-    prepared->links = make_light_links(scene);
-    prepared->lights = std::move(scene.lights);
-    prepared->environment = std::move(scene.environment);
-    prepared->light_groups = make_light_groups(
-        {prepared->materials, prepared->lights, prepared->environment ? &*prepared->environment : nullptr},
-        settings.image.layers);
-    prepared->camera = scene.camera;
-    prepared->mesh_count = uint32_t(scene.meshes.size());
-    prepared->width = settings.image.width, prepared->height = settings.image.height;
-
-    std::map<SurfaceKey, uint32_t> surface_of_key;
-    std::vector<uint32_t> first_object;
-    const uint32_t default_material = uint32_t(prepared->materials.size()) - 1;
-    for (uint32_t k = 0; k < scene.objects.size(); ++k) {
-        const auto [place, is_new] =
-            surface_of_key.try_emplace(make_key(scene, k), uint32_t(first_object.size()));
-        if (is_new) first_object.push_back(k);
-        prepared->instances.push_back(make_instance(scene.objects[k], place->second, default_material));
-    }
-    prepared->has_shadow_catchers = has_shadow_catchers(scene);
-    const std::vector<Vec3f> taken_off = move_meshes_to_origin(scene);
-    prepare_maps(scene, editable);
-    make_surfaces(scene, surface_of_key, first_object, prepared->surfaces);
-    share_mips(scene, surface_of_key, *prepared);
-    add_tangents(*prepared);
-    place_instances(scene, taken_off, origin, *prepared);
-
-    update_scene_levels(*prepared, settings);
-    for (uint32_t surface = 0; surface < prepared->surfaces.size(); ++surface)
-        prepared->surfaces[surface].mips = choose_scene_mips(*prepared, surface);
-    prepared->may_enclose_camera = may_enclose_camera(*prepared);
-    prepared->terminators = find_terminators(*prepared);
-    if (settings.surface.mode == SurfaceMode::tessellated) drop_detail(*prepared);
+SceneParts prepare_scene_parts(Scene scene, const RenderSettings& settings, SceneOrigin origin,
+                               Polygonal polygons) {
+    SceneParts parts;
+    parts.prepared.scene = std::make_shared<PreparedScene>();
+    PreparedScene& prepared = *parts.prepared.scene;
+    prepare_parts(scene, settings, origin, nullptr, polygons, parts);
+    finish_levels(settings, prepared);
+    if (settings.surface.mode == SurfaceMode::tessellated) drop_detail(prepared);
     if (settings.surface.mode == SurfaceMode::tessellated)
-        tessellate_scene(*prepared, available_memory_bytes());
-    for (std::string& warning : find_space_warnings(*prepared))
-        prepared->warnings.push_back(std::move(warning));
-    return editable;
+        tessellate_scene(prepared, available_memory_bytes());
+    add_space_warnings(prepared);
+    return parts;
+}
+
+std::optional<std::vector<SurfaceChange>> prepare_next_scene(Scene scene, const RenderSettings& settings,
+                                                             SceneParts& parts) {
+    SceneParts next;
+    next.prepared.scene = std::make_shared<PreparedScene>();
+    const size_t surface_count = parts.prepared.scene->surfaces.size();
+    std::vector<std::vector<uint32_t>> mips;
+    for (Surface& surface : parts.prepared.scene->surfaces) mips.push_back(surface.mips);
+    std::vector<SurfaceChange> changes =
+        prepare_parts(scene, settings, SceneOrigin::given, &parts, Polygonal::keep, next);
+    PreparedScene& prepared = *next.prepared.scene;
+    finish_levels(settings, prepared);
+    const bool has_same_surfaces =
+        next.surfaces == parts.surfaces && prepared.surfaces.size() == surface_count;
+    if (has_same_surfaces) mark_other_mips(mips, prepared, changes);
+    add_space_warnings(prepared);
+    // In place, since engines refer to it.
+    std::shared_ptr<PreparedScene> place = std::move(parts.prepared.scene);
+    *place = std::move(prepared);
+    next.prepared.scene = std::move(place);
+    parts = std::move(next);
+    if (!has_same_surfaces) return std::nullopt;
+    std::erase_if(changes, [](const SurfaceChange& change) {
+        return !change.is_replaced && std::ranges::find(change.is_changed, 1) == change.is_changed.end();
+    });
+    for (SurfaceChange& change : changes) change.looks_different = change.is_changed;
+    return changes;
 }
 
 std::shared_ptr<const PreparedScene> prepare_scene(Scene scene, const RenderSettings& settings,
                                                    SceneOrigin origin) {
     const std::shared_ptr<PreparedScene> prepared =
-        prepare_editable_scene(std::move(scene), settings, origin).scene;
+        prepare_scene_parts(std::move(scene), settings, origin, Polygonal::free).prepared.scene;
     for (PreparedMap& map : prepared->maps)
         if (map.coefficients) map.texture = nullptr;
     return prepared;

@@ -95,8 +95,9 @@ struct PreparedScene {
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface);
 
 /// What world space is measured from. camera: from there, if an object lies so far away from the origin that
-/// its shadows would lose digits; for pictures, whose rays all start at the camera or at what it sees.
-enum class SceneOrigin { world, camera };
+/// its shadows would lose digits; for pictures, whose rays all start at the camera or at what it sees. given:
+/// from PreparedScene::origin, that of an earlier time of the scene.
+enum class SceneOrigin { world, camera, given };
 
 /// The one way from a scene to a prepared one: validates, makes surfaces in parallel, computes levels, lists
 /// warnings; meshes are freed as used. Throws bad_input, out_of_memory for a tessellation.

@@ -70,18 +70,28 @@ void join(std::vector<uint8_t>& all, const std::vector<uint8_t>& added) {
 
 void refuse_tessellated(const SurfaceSettings& settings) {
     if (settings.mode == SurfaceMode::tessellated)
-        throw Error(ErrorKind::usage, {"a tessellated surface does not follow edits of its map", "session",
+        throw Error(ErrorKind::usage, {"a tessellated surface follows no change of its scene", "session",
                                        "surface.mode = direct"});
 }
 
 } // namespace
 
-SceneEditor::SceneEditor(Scene scene, const RenderSettings& settings)
+SceneEditor::SceneEditor(Scene scene, const RenderSettings& settings, SessionUse use)
     : lod_(settings.surface.lod), hash_(scene.hash) {
     refuse_tessellated(settings.surface);
-    EditableScene editable = prepare_editable_scene(std::move(scene), settings, SceneOrigin::camera);
-    scene_ = std::move(editable.scene), mips_ = std::move(editable.mips);
-    own_maps();
+    const Polygonal polygons = use == SessionUse::scenes ? Polygonal::keep : Polygonal::free;
+    parts_ = prepare_scene_parts(std::move(scene), settings, SceneOrigin::camera, polygons);
+    scene_ = parts_.prepared.scene, mips_ = parts_.prepared.mips;
+    if (use != SessionUse::scenes) own_maps();
+}
+
+std::optional<std::vector<SurfaceChange>> SceneEditor::change_scene(Scene scene,
+                                                                    const RenderSettings& settings) {
+    hash_ = scene.hash;
+    std::optional<std::vector<SurfaceChange>> changes =
+        prepare_next_scene(std::move(scene), settings, parts_);
+    scene_ = parts_.prepared.scene, mips_ = parts_.prepared.mips;
+    return changes;
 }
 
 /// The scene's textures may be shared with whoever made it (their mips are not), so each is copied; one

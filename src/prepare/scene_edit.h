@@ -4,19 +4,15 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "prepare/prepared_scene.h"
+#include "prepare/scene_parts.h"
+#include "prepare/surface_change.h"
 #include "relief/session.h"
 
 namespace relief {
-
-/// Patches of a surface, a byte each: those whose displacement has changed, and those that look different,
-/// which are more: shading normals read beyond the sides of a patch.
-struct SurfaceChange {
-    uint32_t surface = 0;
-    std::vector<uint8_t> is_changed, looks_different;
-};
 
 /// An edit that fits the scene it was checked against.
 class CheckedEdit {
@@ -26,13 +22,15 @@ class CheckedEdit {
     std::vector<size_t> maps_; ///< of PreparedScene::maps, each texture once
 };
 
-/// Changes a scene in place: texels, bounds of maps and their smaller copies, the camera, levels of
-/// instances, mips of patches. Surfaces' meshes, instances' places, materials and lights never change. Not
-/// thread safe.
+/// Changes a scene in place, by edits of its maps: texels, bounds of maps and their smaller copies, the
+/// camera, levels of instances, mips of patches; or as a whole, to what it is at another time. Not thread
+/// safe.
 class SceneEditor {
   public:
-    /// As prepare_scene(), with maps copied, as they may be shared. Error{usage} for tessellated surfaces.
-    SceneEditor(Scene scene, const RenderSettings& settings);
+    /// As prepare_scene(). With SessionUse::edits maps are copied, as they may be shared; without apply() is
+    /// not to be called. With SessionUse::scenes meshes are kept, and change_scene() may be called.
+    /// Error{usage} for tessellated surfaces.
+    SceneEditor(Scene scene, const RenderSettings& settings, SessionUse use = SessionUse::edits);
 
     /// Changed by apply(), in place: no rays may be traced in it then.
     std::shared_ptr<const PreparedScene> scene() const { return scene_; }
@@ -49,6 +47,9 @@ class SceneEditor {
     /// of their maps for them. `scene_hash` as for Session::change_view.
     std::vector<SurfaceChange> change_view(const Camera& camera, const RenderSettings& settings,
                                            uint64_t scene_hash);
+
+    /// As prepare_next_scene(). After an error the editor is of no use.
+    std::optional<std::vector<SurfaceChange>> change_scene(Scene scene, const RenderSettings& settings);
 
   private:
     /// What a surface reads of an image, and where that has changed, in the image and its copies.
@@ -79,6 +80,7 @@ class SceneEditor {
 
     LodRule lod_;
     uint64_t hash_;
+    SceneParts parts_; ///< without what only SessionUse::scenes needs, unless it is that
     std::shared_ptr<PreparedScene> scene_;
     std::vector<std::shared_ptr<MipChain>> mips_;    ///< of PreparedScene::maps
     std::map<const Texture*, EditableMap> textures_; ///< by the texture itself

@@ -43,6 +43,8 @@ class EnvironmentLight {
   public:
     explicit EnvironmentLight(const Environment& environment);
 
+    const Environment& environment() const { return environment_; }
+
     Vec3f radiance(const Vec3f& direction) const { return look_up(direction).radiance; }
     /// At a place of the image.
     Vec3f radiance(const Vec2f& position) const;

@@ -27,6 +27,15 @@ void LightSet::follow_surfaces() {
     if (has_emitters()) find_sources();
 }
 
+void LightSet::follow_scene() {
+    const std::optional<Environment>& environment = tracer_.scene().environment;
+    if (!environment)
+        environment_.reset();
+    else if (!environment_ || !(environment_->environment() == *environment))
+        environment_.emplace(*environment);
+    find_sources();
+}
+
 void LightSet::find_sources() {
     emitters_ = make_emitter_table(tracer_.scene());
     choice_ = LightChoice(

@@ -38,6 +38,9 @@ class LightSet {
     /// Surfaces that glow may have changed their shape. Not while lights are drawn.
     void follow_surfaces();
 
+    /// Anything may have changed. Not while lights are drawn.
+    void follow_scene();
+
     /// What is lit.
     struct Receiver {
         Vec3f position;

@@ -81,6 +81,12 @@ PyramidCache::get_or_build(const std::shared_ptr<const Texture>& texture) {
     return entries_.try_emplace(texture.get(), Entry{texture, std::move(pyramid)}).first->second.pyramid;
 }
 
+void PyramidCache::keep(const std::shared_ptr<const Texture>& texture,
+                        const std::shared_ptr<const BoundsPyramid>& pyramid) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    entries_.try_emplace(texture.get(), Entry{texture, pyramid});
+}
+
 void check_reach(const std::string& name, const DisplacementMap& map, const std::string& file,
                  const ChannelRange& range) {
     for (const Vec3f& row : map.matrix) {

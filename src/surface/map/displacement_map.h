@@ -14,6 +14,9 @@ namespace relief {
 class PyramidCache {
   public:
     std::shared_ptr<const BoundsPyramid> get_or_build(const std::shared_ptr<const Texture>& texture);
+    /// One that there is already.
+    void keep(const std::shared_ptr<const Texture>& texture,
+              const std::shared_ptr<const BoundsPyramid>& pyramid);
 
   private:
     struct Entry {

@@ -37,6 +37,7 @@ class LevelField {
     bool is_uniform() const { return packed_.empty(); }
     int max_level() const { return max_level_; }
     size_t byte_count() const { return packed_.size() * sizeof(uint32_t); }
+    friend bool operator==(const LevelField&, const LevelField&) = default;
 
   private:
     void find_max_level();

@@ -1,0 +1,138 @@
+#include "prepare/scene_maps.h"
+
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "surface/map/displacement_map.h"
+
+namespace relief {
+
+namespace {
+
+std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
+    std::set<uint32_t> meshes;
+    for (const Object& object : scene.objects)
+        if (object.displacement == displacement) meshes.insert(object.mesh);
+    std::vector<const Mesh*> list;
+    for (const uint32_t mesh : meshes) list.push_back(&scene.meshes[mesh]);
+    return list;
+}
+
+/// Coefficients in place of texels, once for each form of an image. Keeps the images alive.
+class SplineCache {
+  public:
+    std::shared_ptr<const Texture> get_or_make(const std::shared_ptr<const Texture>& texels,
+                                               const SplineForm& form) {
+        if (!texels || form.keeps_texels()) return texels;
+        Entry& entry = entries_[{texels.get(), form}];
+        if (!entry.coefficients) entry = {texels, make_spline(texels, form)};
+        return entry.coefficients;
+    }
+
+  private:
+    struct Entry {
+        std::shared_ptr<const Texture> texels, coefficients;
+    };
+    std::map<std::pair<const Texture*, SplineForm>, Entry> entries_;
+};
+
+/// Of a tile; its texture becomes the one that surfaces read.
+void prepare_map(const Displacement& displacement, MapTile& tile, const std::vector<const Mesh*>& meshes,
+                 SplineCache& splines, EditableScene& prepared) {
+    const void* source = tile.texture.get();
+    GutterFill gutter;
+    if (displacement.dilate && !meshes.empty()) gutter = find_gutter(displacement, tile, meshes);
+    if (!gutter.copies.empty()) {
+        auto filled = std::make_shared<Texture>(*tile.texture);
+        gutter.apply(*filled);
+        tile.texture = std::move(filled);
+    }
+    std::shared_ptr<MipChain> mips;
+    if (displacement.filter == MapFilter::mip && !meshes.empty()) {
+        const TexelRectangle all{0, 0, tile.texture->width - 1, tile.texture->height - 1};
+        if (!find_texel_range(*tile.texture, all)) refuse_bad_texel(*tile.texture, all);
+        OutsideTexels outside;
+        if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
+        mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
+    }
+    PreparedMap map;
+    map.displacement = displacement.name, map.udim = tile.udim;
+    map.texture = tile.texture, map.gutter = std::move(gutter), map.mips = mips;
+    map.form = make_spline_form(displacement);
+    map.source = source;
+    if (!map.form.keeps_texels() && !meshes.empty())
+        tile.texture = map.coefficients = splines.get_or_make(tile.texture, map.form);
+    prepared.scene->maps.push_back(std::move(map));
+    prepared.mips.push_back(std::move(mips));
+}
+
+/// The number of a displacement's first tile among all.
+size_t find_first_map(const std::vector<Displacement>& displacements, size_t displacement) {
+    size_t first = 0;
+    for (size_t k = 0; k < displacement; ++k) first += displacements[k].tiles.size();
+    return first;
+}
+
+/// What was made of the images before.
+void take_over(const SceneParts& before, size_t displacement, std::vector<MapTile>& tiles,
+               EditableScene& prepared) {
+    const size_t first = find_first_map(before.displacements, displacement);
+    for (size_t k = 0; k < tiles.size(); ++k) {
+        const PreparedMap& map = before.prepared.scene->maps[first + k];
+        tiles[k].texture = map.coefficients ? map.coefficients : map.texture;
+        prepared.scene->maps.push_back(map);
+        prepared.mips.push_back(before.prepared.mips[first + k]);
+    }
+}
+
+} // namespace
+
+void prepare_textures(std::vector<Material>& materials) {
+    SplineCache splines;
+    for (Material& material : materials) {
+        for (InputTexture& placed : material.textures) {
+            SplineForm form = make_spline_form(placed.filter);
+            form.wrap = placed.is_udim ? WrapMode::clamp : placed.wrap;
+            for (MapTile& tile : placed.tiles) tile.texture = splines.get_or_make(tile.texture, form);
+            if (is_smooth(placed.filter)) placed.filter = MapFilter::bspline;
+        }
+        visit_own_textures(material, [&](const char*, auto& texture, MapFilter& filter) {
+            if (!is_smooth(filter)) return;
+            texture = splines.get_or_make(texture, make_spline_form(filter));
+            filter = MapFilter::bspline;
+        });
+    }
+}
+
+void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before, EditableScene& prepared) {
+    SplineCache splines;
+    for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
+        Displacement& displacement = scene.displacements[k];
+        const std::vector<const Mesh*> meshes = list_meshes(scene, k);
+        if (same.images[k])
+            take_over(*before, k, displacement.tiles, prepared);
+        else
+            for (MapTile& tile : displacement.tiles)
+                prepare_map(displacement, tile, meshes, splines, prepared);
+        // What the surfaces get are coefficients now.
+        if (is_smooth(displacement.filter) && !meshes.empty())
+            displacement.filter = MapFilter::bspline, displacement.dequantize = false;
+    }
+}
+
+void share_mips(const Scene& scene, const SurfaceNumbers& surfaces, PreparedScene& prepared) {
+    std::vector<size_t> first_map(scene.displacements.size(), 0);
+    for (size_t k = 1; k < first_map.size(); ++k)
+        first_map[k] = first_map[k - 1] + scene.displacements[k - 1].tiles.size();
+    for (const auto& [key, surface] : surfaces) {
+        const uint32_t displacement = std::get<1>(key);
+        if (displacement == kNoIndex) continue;
+        std::vector<DisplacementMap::Tile>& tiles = prepared.surfaces[surface].map.tiles;
+        for (size_t k = 0; k < tiles.size(); ++k)
+            tiles[k].mips = prepared.maps[first_map[displacement] + k].mips;
+    }
+}
+
+} // namespace relief

@@ -1,0 +1,137 @@
+#include "prepare/scene_surfaces.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "math/affine.h"
+#include "surface/map/displacement_map.h"
+
+namespace relief {
+
+namespace {
+
+SurfaceKey make_key(const Scene& scene, uint32_t object_index) {
+    const Object& object = scene.objects[object_index];
+    const bool is_world = object.displacement != kNoIndex &&
+                          scene.displacements[object.displacement].space == DisplacementSpace::world;
+    return {object.mesh, object.displacement, is_world ? object_index : kNoIndex};
+}
+
+Instance make_instance(const Object& object, uint32_t surface, uint32_t default_material) {
+    Instance instance;
+    instance.surface = surface;
+    instance.material = object.material == kNoIndex ? default_material : object.material;
+    instance.visibility_mask = object.visibility_mask;
+    instance.is_shadow_catcher = object.is_shadow_catcher;
+    return instance;
+}
+
+/// Frees the polygons of meshes that no later surface needs.
+void release_mesh(Scene& scene, uint32_t mesh) {
+    Mesh empty;
+    empty.name = std::move(scene.meshes[mesh].name);
+    scene.meshes[mesh] = std::move(empty);
+}
+
+bool has_same_tiles(const DisplacementMap& a, const DisplacementMap& b) {
+    return std::ranges::equal(a.tiles, b.tiles, {}, &DisplacementMap::Tile::texture,
+                              &DisplacementMap::Tile::texture);
+}
+
+/// Whether vertices come out the same.
+bool is_same_map(const DisplacementMap& a, const DisplacementMap& b) {
+    return has_same_tiles(a, b) && a.matrix == b.matrix && a.midlevel == b.midlevel && a.wrap == b.wrap &&
+           a.flip_v == b.flip_v && a.is_tangent == b.is_tangent && a.is_filtered == b.is_filtered &&
+           a.has_autobump == b.has_autobump && a.is_smooth == b.is_smooth;
+}
+
+/// Makes the surfaces of one scene, of several meshes at once.
+class SurfaceMaker {
+  public:
+    SurfaceMaker(const Scene& scene, const SurfaceList& list, const SameParts& same, SceneParts* before)
+        : scene_(scene), list_(list), same_(same), before_(before) {
+        if (!before) return;
+        for (const Surface& surface : before->prepared.scene->surfaces)
+            for (const DisplacementMap::Tile& tile : surface.map.tiles)
+                pyramids_.keep(tile.texture, tile.pyramid);
+    }
+
+    Surface make(const SurfaceKey& key, SurfaceChange& change) {
+        const Object& object = scene_.objects[list_.first_object[change.surface]];
+        const Displacement* displacement =
+            object.displacement == kNoIndex ? nullptr : &scene_.displacements[object.displacement];
+        const Affine object_from_world = *invert(object.world_from_object);
+        std::optional<Surface> kept = take(key);
+        if (!kept) {
+            change.is_replaced = true;
+            return make_surface(scene_.meshes[object.mesh], displacement, object_from_world, &pyramids_);
+        }
+        kept->corner_tangents.clear();
+        if (displacement) change_map(*displacement, object_from_world, *kept, change);
+        return std::move(*kept);
+    }
+
+  private:
+    /// The surface of a key before, if nothing but its map may differ.
+    std::optional<Surface> take(const SurfaceKey& key) const {
+        const auto [mesh, displacement, object] = key;
+        if (!before_ || !same_.meshes[mesh] || (displacement != kNoIndex && !same_.bases[displacement]))
+            return std::nullopt;
+        const auto found = before_->surfaces.find(key);
+        if (found == before_->surfaces.end()) return std::nullopt;
+        return std::move(before_->prepared.scene->surfaces[found->second]);
+    }
+
+    void change_map(const Displacement& displacement, const Affine& object_from_world, Surface& surface,
+                    SurfaceChange& change) {
+        DisplacementMap map = make_displacement_map(displacement, object_from_world, pyramids_);
+        map.longest_axis = surface.map.longest_axis;
+        if (!surface.derivatives.empty()) check_reach(displacement.name, map);
+        if (!is_same_map(map, surface.map)) change.is_changed.assign(surface.patch_count(), 1);
+        surface.map = std::move(map);
+    }
+
+    const Scene& scene_;
+    const SurfaceList& list_;
+    const SameParts& same_;
+    SceneParts* before_;
+    PyramidCache pyramids_;
+};
+
+} // namespace
+
+SurfaceList list_surfaces(const Scene& scene, uint32_t default_material, std::vector<Instance>& instances) {
+    SurfaceList list;
+    for (uint32_t k = 0; k < scene.objects.size(); ++k) {
+        const auto [place, is_new] =
+            list.numbers.try_emplace(make_key(scene, k), uint32_t(list.first_object.size()));
+        if (is_new) list.first_object.push_back(k);
+        instances.push_back(make_instance(scene.objects[k], place->second, default_material));
+    }
+    return list;
+}
+
+std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, const SameParts& same,
+                                         SceneParts* before, Polygonal polygons,
+                                         std::vector<Surface>& surfaces) {
+    std::vector<std::vector<SurfaceKey>> keys_of_mesh(scene.meshes.size());
+    for (const auto& [key, surface] : list.numbers) keys_of_mesh[std::get<0>(key)].push_back(key);
+    std::vector<SurfaceChange> changes(list.numbers.size());
+    surfaces.resize(list.numbers.size());
+    SurfaceMaker maker(scene, list, same, before);
+    parallel_for("make_surfaces", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t mesh = begin; mesh < end; ++mesh) {
+            for (const SurfaceKey& key : keys_of_mesh[mesh]) {
+                const uint32_t surface = list.numbers.at(key);
+                changes[surface].surface = surface;
+                surfaces[surface] = maker.make(key, changes[surface]);
+            }
+            if (polygons == Polygonal::free) release_mesh(scene, uint32_t(mesh));
+        }
+    });
+    return changes;
+}
+
+} // namespace relief

@@ -1,0 +1,25 @@
+// Surfaces of a scene, mesh by mesh, so that polygons can be freed; those that are as before are taken over.
+#pragma once
+
+#include <vector>
+
+#include "prepare/scene_parts.h"
+
+namespace relief {
+
+/// One surface a key, in the order of first use. `first_object`: of each surface.
+struct SurfaceList {
+    SurfaceNumbers numbers;
+    std::vector<uint32_t> first_object;
+};
+
+/// Also makes the instances, without places and levels. `default_material`: of objects that name none.
+SurfaceList list_surfaces(const Scene& scene, uint32_t default_material, std::vector<Instance>& instances);
+
+/// What surfaces are made of is moved out of `before`; the result tells what of each differs from it,
+/// patches of other mips aside.
+std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, const SameParts& same,
+                                         SceneParts* before, Polygonal polygons,
+                                         std::vector<Surface>& surfaces);
+
+} // namespace relief

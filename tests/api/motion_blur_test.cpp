@@ -1,0 +1,170 @@
+// Motion blur: the mean of still pictures at the times of its samples, bit for bit.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "math/affine.h"
+#include "relief/error.h"
+#include "relief/session.h"
+#include "support/session_scenes.h"
+
+namespace relief {
+namespace {
+
+using test::make_rough_torus, test::make_session_settings;
+
+constexpr double kFrame = 12;
+
+/// The body moves, grows its relief and is seen from a camera that moves.
+Scene make_scene(double frame) {
+    Scene scene = make_rough_torus();
+    const float t = float(frame - kFrame);
+    scene.meshes[0].name = "torus";
+    scene.objects[0].world_from_object.translation = {0.8f * t, 0, 0.3f * t};
+    scene.displacements[0].scale = scene.displacements[0].scale * (1 + 0.5f * t);
+    scene.camera.from = scene.camera.from + Vec3f{0, 0.6f * t, 0};
+    scene.camera.shutter_open = -0.5f, scene.camera.shutter_close = 0.25f;
+    scene.hash = 5;
+    return scene;
+}
+
+/// The same but for the mesh, which stays.
+SceneUpdate update_scene(double frame) {
+    Scene scene = make_scene(frame);
+    const std::string name = scene.meshes[0].name;
+    scene.meshes[0] = {};
+    scene.meshes[0].name = name;
+    const Camera camera = scene.camera;
+    return {std::move(scene), camera, 5};
+}
+
+RenderSettings make_settings(int samples) {
+    RenderSettings settings = make_session_settings();
+    settings.image.width = 48, settings.image.height = 36, settings.image.spp = samples;
+    settings.image.layers.clear();
+    return settings;
+}
+
+RenderResult render_blur(const RenderSettings& settings, RenderObserver* observer = nullptr,
+                         const Checkpoints& checkpoints = {}) {
+    Session session(make_scene(kFrame), settings, SessionUse::scenes);
+    return session.render_moving(kFrame, update_scene, observer, checkpoints);
+}
+
+/// Sums of single samples, in their order, as a film sums them.
+std::vector<float> average_stills(RenderSettings settings) {
+    const int first = settings.image.first_sample, samples = settings.image.spp;
+    std::vector<double> sums;
+    for (int k = first; k < first + samples; ++k) {
+        settings.image.first_sample = k, settings.image.spp = 1;
+        const Image still =
+            render(make_scene(find_sample_time(make_scene(kFrame).camera, kFrame, k)), settings).image;
+        sums.resize(still.pixels.size());
+        for (size_t p = 0; p < sums.size(); ++p) sums[p] += double(still.pixels[p]);
+    }
+    std::vector<float> mean;
+    for (const double sum : sums) mean.push_back(float(sum / samples));
+    return mean;
+}
+
+TEST(MotionBlur, spreads_times_evenly_over_the_open_shutter) {
+    Camera camera;
+    camera.shutter_open = -0.5f, camera.shutter_close = 0.5f;
+    EXPECT_EQ(find_sample_time(camera, 3, 0), 3);
+    for (const int first : {0, 1, 37, 1000000}) {
+        std::set<double> times;
+        for (int k = first; k < first + 64; ++k) times.insert(find_sample_time(camera, 3, k));
+        ASSERT_EQ(times.size(), 64u);
+        EXPECT_GE(*times.begin(), 2.5);
+        EXPECT_LT(*times.rbegin(), 3.5);
+        double widest = 0, last = 2.5;
+        for (const double time : times) widest = std::max(widest, time - last), last = time;
+        EXPECT_LT(widest, 2.0 / 64) << "first sample " << first;
+    }
+}
+
+TEST(MotionBlur, is_the_mean_of_still_pictures) {
+    const RenderSettings settings = make_settings(16);
+    EXPECT_TRUE(render_blur(settings).image.pixels == average_stills(settings));
+    RenderSettings later = make_settings(5);
+    later.image.first_sample = 7;
+    EXPECT_TRUE(render_blur(later).image.pixels == average_stills(later)) << "any range of samples";
+}
+
+TEST(MotionBlur, differs_from_an_instant) {
+    const RenderSettings settings = make_settings(8);
+    EXPECT_FALSE(render_blur(settings).image.pixels == render(make_scene(kFrame), settings).image.pixels);
+}
+
+TEST(MotionBlur, is_the_same_on_engines_that_follow_nothing) {
+    RenderSettings settings = make_settings(3);
+    const Image expected = render_blur(settings).image;
+    settings.experiment.structure = StructureKind::kdtree;
+    const RenderResult other = render_blur(settings);
+    EXPECT_TRUE(other.image.pixels == expected.pixels);
+    EXPECT_EQ(other.statistics.camera_rays, uint64_t(48) * 36 * 3) << "of all engines together";
+}
+
+TEST(MotionBlur, goes_on_from_a_checkpoint) {
+    const RenderSettings settings = make_settings(6);
+    const Image expected = render_blur(settings).image;
+    std::stringstream film;
+    Checkpoints writing;
+    writing.save = [&](const std::function<void(std::ostream&)>& write) { film.str({}), write(film); };
+    RenderSettings part = settings;
+    part.image.spp = 2;
+    render_blur(part, nullptr, writing);
+    Checkpoints reading;
+    reading.resume = &film;
+    EXPECT_TRUE(render_blur(settings, nullptr, reading).image.pixels == expected.pixels);
+}
+
+/// Blocks that come back late have their samples at the times of these.
+TEST(MotionBlur, asks_for_samples_by_noise) {
+    RenderSettings settings = make_settings(64);
+    settings.image.noise = 0.08f;
+    settings.image.layers = {"samples"};
+    const RenderResult result = render_blur(settings);
+    std::vector<float> counts;
+    const size_t channel = result.image.find_channel("samples.Y").value();
+    for (size_t k = channel; k < result.image.pixels.size(); k += result.image.channels.size())
+        counts.push_back(result.image.pixels[k]);
+    const auto [least, most] = std::ranges::minmax_element(counts);
+    EXPECT_LT(*least, *most);
+    // A pixel's colour is that of a picture with as many samples for all.
+    RenderSettings even = make_settings(int(*most));
+    const Image whole = render_blur(even).image;
+    const size_t pixel = size_t(std::ranges::max_element(counts) - counts.begin());
+    for (size_t c = 0; c < 3; ++c)
+        EXPECT_EQ(result.image.pixels[pixel * result.image.channels.size() + c],
+                  whole.pixels[pixel * whole.channels.size() + c]);
+}
+
+TEST(MotionBlur, tells_progress_of_the_whole_and_heeds_an_end) {
+    struct Watcher : RenderObserver {
+        std::vector<Progress> told;
+        int most = 1000;
+        void on_progress(const Progress& progress) override { told.push_back(progress); }
+        bool is_cancelled() const override { return !told.empty() && told.back().samples_done >= most; }
+    };
+    Watcher watcher;
+    EXPECT_TRUE(render_blur(make_settings(4), &watcher).is_complete);
+    ASSERT_FALSE(watcher.told.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(watcher.told, {}, &Progress::fraction));
+    EXPECT_EQ(watcher.told.back().samples_done, 4);
+    EXPECT_EQ(watcher.told.back().samples_total, 4);
+    EXPECT_EQ(watcher.told.back().fraction, 1);
+    Watcher impatient;
+    impatient.most = 2;
+    const RenderResult cut = render_blur(make_settings(16), &impatient);
+    EXPECT_FALSE(cut.is_complete);
+    EXPECT_EQ(cut.whole_samples, 2);
+    EXPECT_TRUE(cut.image.pixels == average_stills(make_settings(2)));
+}
+
+} // namespace
+} // namespace relief
