@@ -18,7 +18,7 @@ import pages
 SMALL = """#!/usr/bin/env python3
 import os, sys
 words = sys.argv[1:]
-if words and words[0] == "render":
+if words[:1] == ["render"] or words[:2] == ["farm", "plan"]:
     for option, value in (("--size", "48x27"), ("--spp", "1"), ("--bounces", "1")):
         if option in words:
             words[words.index(option) + 1] = value
@@ -28,7 +28,7 @@ if words and words[0] == "render":
 os.execv(%(relief)r, ["relief", *words])
 """
 # Only these need more than the samples have.
-NEEDS_DEVICE = ("--engine vulkan", "--device")
+NEEDS_DEVICE = ("--engine vulkan", "--device", "--to slurm", "--submit slurm")
 
 
 def run(command: str, folder: pathlib.Path, path: pathlib.Path) -> subprocess.CompletedProcess:
@@ -90,7 +90,7 @@ def check_commands(page: pathlib.Path, root: pathlib.Path, relief: str, given: p
             elif re.match(r"(xvfb-run )?relief view", command):
                 left_out.append(f"{name}: {command}: a window; its options were checked")
             elif any(need in command for need in NEEDS_DEVICE):
-                left_out.append(f"{name}: {command}: needs a device")
+                left_out.append(f"{name}: {command}: needs a device or a cluster")
             else:
                 done = run(command, folder, path)
                 if done.returncode != 0:
@@ -128,7 +128,8 @@ def collect_help(relief: str) -> str:
 
     verbs = ["render", "inspect", "convert", "scene", "compare", "merge", "devices", "bench"]
     suites = re.findall(r"(?m)^  ([a-z]+[0-9]?) ", help_of("bench"))
-    return "".join([help_of(), *(help_of(v) for v in verbs), *(help_of("bench", s) for s in suites)])
+    return "".join([help_of(), *(help_of(v) for v in verbs), *(help_of("bench", s) for s in suites),
+                    *(help_of("farm", v) for v in ("plan", "submit", "work", "status", "merge", "retry"))])
 
 
 def main() -> int:
