@@ -137,7 +137,7 @@ TEST_F(FarmStates, an_attempt_whose_file_is_gone_still_ends) {
 
 /// Links that lead nowhere have names, and nothing that could be opened or looked at.
 TEST_F(FarmStates, of_640000_tasks_names_alone_are_read) {
-    constexpr uint32_t kStep = 16; // making all of the names would take longer than reading them
+    constexpr uint32_t kStep = 160; // making all of the names would take longer than reading them
     job_.frames.resize(10000), job_.tiles = 64, job_.passes = 1;
     for (int k = 0; k < 10000; ++k) job_.frames[size_t(k)] = k + 1;
     for (uint32_t task = 0; task < job_.task_count(); task += kStep) {
@@ -148,9 +148,9 @@ TEST_F(FarmStates, of_640000_tasks_names_alone_are_read) {
         fs::create_symlink("nowhere", folder / name_attempt(attempt));
     }
     const JobStates states = read_states(job_);
-    EXPECT_EQ(states.count(TaskState::done), 40000u);
+    EXPECT_EQ(states.count(TaskState::done), 4000u);
     EXPECT_EQ(states.folders_read, 640u);
-    EXPECT_EQ(states.names_read, 40000u);
+    EXPECT_EQ(states.names_read, 4000u);
     EXPECT_EQ(states.files_looked_at, 0u);
 }
 

@@ -39,7 +39,7 @@ def check_killed_workers(relief, folder):
     farm = subprocess.Popen([relief, "farm", "submit", job, "--workers", "3", "--threads", "1", "--no-merge", "-q"],
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     twins = [subprocess.Popen([relief, "farm", "work", job, "--task", str(TWICE), "--again", "--threads", "1"],
-                              stdout=subprocess.DEVNULL) for _ in range(2)]
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(2)]
     end = time.monotonic() + PATIENCE
     killed = kill_victims(job, choose_victims() - {TWICE}, lambda: farm.poll() is not None or time.monotonic() > end)
     output, errors = farm.communicate(timeout=10)

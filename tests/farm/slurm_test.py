@@ -73,7 +73,7 @@ def check(cluster, relief, folder):
     plan(relief, folder, "--heartbeat", "1")
     output = submit(cluster, relief, "submit", job, "--to", "slurm", "--partition", "farm", "--sbatch=--nice=1")
     assert "100 tasks as 100 elements of 3 array jobs" in output and "frames are written by job" in output, output
-    twins = [subprocess.Popen([relief, "farm", "work", job, "--task", str(TWICE), "--again"], stdout=subprocess.DEVNULL)
+    twins = [subprocess.Popen([relief, "farm", "work", job, "--task", str(TWICE), "--again"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
              for _ in range(2)]
     met = disturb_all(cluster, job, choose_victims() - {TWICE})
     assert [twin.wait() for twin in twins] == [0, 0]
