@@ -27,6 +27,7 @@ namespace relief::cli {
 namespace {
 
 constexpr int kProcessorsAWorker = 4;
+constexpr size_t kMostTold = 10; ///< failures
 
 struct Worker {
     pid_t process = 0;
@@ -131,6 +132,7 @@ class LocalFarm {
     void note_failed(const Worker& worker, int code) {
         ++failed_;
         if (exit_code_ == kExitDone) exit_code_ = code;
+        if (failed_ > kMostTold) return; // `status` tells of all
         printer_.end_line();
         fmt::print(stderr, "relief: warning: task {} failed with exit code {}: {}; its log: {}\n",
                    worker.task, code, describe_task(job_, find_task(job_, worker.task)),

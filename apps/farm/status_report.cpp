@@ -109,6 +109,8 @@ StatusReport make_status(const FarmJob& job) {
     estimate_rates(report);
     for (const Attempt& attempt : report.states.failed) {
         if (report.failed.size() == kMostFailures) break;
+        const bool is_told = !report.failed.empty() && report.failed.back().attempt.task == attempt.task;
+        if (is_told) continue;
         report.failed.push_back(describe_failure(job, attempt));
     }
     return report;
@@ -134,8 +136,8 @@ std::string format_status(const FarmJob& job, const StatusReport& r) {
                             failed.reason);
         for (const std::string& line : failed.log_lines) text += "    " + line + "\n";
     }
-    if (s.failed.size() > r.failed.size())
-        text += fmt::format("failed: {} more\n", s.failed.size() - r.failed.size());
+    if (s.count(TaskState::failed) > r.failed.size())
+        text += fmt::format("failed: {} more\n", s.count(TaskState::failed) - r.failed.size());
     return text;
 }
 
