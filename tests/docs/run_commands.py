@@ -14,7 +14,7 @@ import tempfile
 
 import pages
 
-# Pictures of one sample.
+# Pictures of one sample; of farms one frame.
 SMALL = """#!/usr/bin/env python3
 import os, sys
 words = sys.argv[1:]
@@ -24,6 +24,8 @@ if words[:1] == ["render"] or words[:2] == ["farm", "plan"]:
             words[words.index(option) + 1] = value
         elif option != "--spp" or "--samples" not in words:
             words += [option, value]
+    if words[0] == "farm":
+        words[words.index("--frames") + 1] = "1"
     words.append("-q")
 os.execv(%(relief)r, ["relief", *words])
 """
