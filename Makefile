@@ -74,6 +74,7 @@ fuzz-slice: packages
 	cmake --preset release -DRELIEF_FUZZ=OFF
 
 peers: packages
+	-@tools/install_packages.sh tools/peer_packages.txt
 	$(call configure_and_build,release,peers)
 	ctest --preset peers
 

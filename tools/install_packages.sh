@@ -1,12 +1,12 @@
 #!/bin/sh
-# Installs the packages of tools/packages.txt that this Debian machine lacks. Needs no network when none is missing.
+# Installs the packages of tools/packages.txt, or of another list, that this Debian machine lacks. Needs no network when none is missing.
 set -eu
 
-list=$(dirname "$0")/packages.txt
+list=${1:-$(dirname "$0")/packages.txt}
 packages=$(sed -e 's/#.*//' "$list")
 
 if ! command -v dpkg-query >/dev/null 2>&1; then
-    echo "This is not a Debian system: install the counterparts of the packages in tools/packages.txt by hand." >&2
+    echo "This is not a Debian system: install the counterparts of the packages in $list by hand." >&2
     exit 0
 fi
 

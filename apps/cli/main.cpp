@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "common/command_line.h"
 #include "common/option_hints.h"
+#include "farm/farm_command.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -37,6 +38,7 @@ std::vector<Verb> add_verbs(CLI::App& app) {
     add("view", "Look at a scene or mesh in a window, change and paint its maps", add_view);
 #endif
     add("bench", "Measure, and compare with the figures of a paper", add_bench);
+    add("farm", "Render a shot on many machines, or by many processes", add_farm);
     add("devices", "List what can render on this machine", add_devices);
     return verbs;
 }
@@ -45,7 +47,8 @@ std::vector<Verb> add_verbs(CLI::App& app) {
 const Command& find_command(CLI::App& app, const std::vector<Verb>& verbs) {
     for (const Verb& verb : verbs) {
         if (!verb.app->parsed()) continue;
-        if (!verb.app->get_prefix_command()) refuse_extras(*verb.app, "relief " + verb.app->get_name());
+        const bool checks_itself = verb.app->get_prefix_command() || !verb.app->get_subcommands({}).empty();
+        if (!checks_itself) refuse_extras(*verb.app, "relief " + verb.app->get_name());
         refuse_empty_names(*verb.app);
         return verb.command;
     }

@@ -21,6 +21,7 @@
 #include "common/values.h"
 #include "finish_picture.h"
 #include "interrupt.h"
+#include "picture_settings.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
@@ -32,20 +33,6 @@
 namespace relief::cli {
 
 namespace {
-
-/// Calls `read`; its complaint about a file that is no scene says what scenes and meshes are.
-template <class Read> auto with_scene_hint(const RenderOptions& options, const Read& read) {
-    const std::string extension = get_lower_extension(options.input);
-    try {
-        return read();
-    } catch (const Error& error) {
-        if (extension == ".json" || !error.hint().empty()) throw;
-        throw Error(error.kind(),
-                    {error.message(), error.where(),
-                     "a scene file is JSON; meshes are .obj, .ply, .gltf, .glb and .fbx"},
-                    error.further());
-    }
-}
 
 void refuse_picture(const RenderOptions& options) {
     constexpr std::string_view kPictures[] = {".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg"};
@@ -94,31 +81,6 @@ void save_aimed_scene(const RenderOptions& options, const RenderSettings& settin
     save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene,
                     list_picture_options(options.aim));
     fmt::print("wrote {}\n", options.aim.saved_scene.string());
-}
-
-/// The camera of a mesh alone is made for landscape pictures and its own angle: others frame it anew.
-AimOptions choose_aim(const RenderOptions& options, const ImageSettings& image) {
-    AimOptions aim = options.aim.scene;
-    const bool fits_already = image.width >= image.height && !aim.fov_degrees;
-    if (is_mesh_file(options.input) && !aim.from && !aim.view && !fits_already) aim.frame_all = true;
-    return aim;
-}
-
-/// Checks what the picture would replace, and aims the scene; the settings of its picture.
-RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
-    add_assumption_warnings(scene);
-    if (options.tile && get_lower_extension(options.output) == ".png")
-        scene.warnings.emplace_back("a tile as a PNG cannot be merged: name an .exr");
-    const std::vector<std::string> files = list_files(scene);
-    keep_files(files, options.output), keep_files(files, options.statistics_file);
-    keep_files(files, options.aim.saved_scene);
-    for (const std::string& film : list_films(options.checkpoint, options.output)) keep_files(files, film);
-    RenderSettings settings = make_settings(options, scene.picture);
-    check_display(options.aim.display, options.output);
-    apply_background(options.aim, options.output, settings.image);
-    aim_scene(scene, choose_aim(options, settings.image),
-              float(settings.image.width) / float(settings.image.height));
-    return settings;
 }
 
 int render_scene(const RenderOptions& options, Scene scene, double start) {

@@ -178,6 +178,15 @@ class RenderObserver {
     virtual void on_picture(Image picture) { (void)picture; }
 };
 
+/// The sums that Checkpoints::save of another render wrote: of a tile of the picture, of a range of its
+/// samples, or of both.
+struct FilmPart {
+    std::string name;                                    ///< for messages: its file
+    std::function<std::unique_ptr<std::istream>()> open; ///< a binary stream; null where it cannot be read
+    Window window;                                       ///< ImageSettings::crop of that render
+    int first_sample = 0;                                ///< ImageSettings::first_sample of that render
+};
+
 /// Keeps the sums of all samples, so that a render can go on from them.
 struct Checkpoints {
     double interval_s = std::numeric_limits<double>::infinity(); ///< between two calls of `save`
@@ -189,6 +198,12 @@ struct Checkpoints {
     /// multiple of 16 samples. Null: none. Throws Error{bad_input} for a stream that is damaged or of another
     /// picture or version; scenes with hash 0 (in memory) are told apart by nothing but these settings.
     std::istream* resume = nullptr;
+    /// What renders of parts of the same picture wrote, in any order: their samples are not traced again. Of
+    /// one part, each pixel keeps its bits. Ranges of samples are added in double precision, which gives the
+    /// bits of one render of all samples unless an addition had to round. Each pixel must have all samples
+    /// before those of a part. Throws Error{bad_input}, whose place is FilmPart::name, for a part that is
+    /// damaged, of another picture, or lacks samples before it.
+    std::vector<FilmPart> parts;
 };
 
 struct RenderResult {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "api/instance_mattes.h"
+#include "api/join_parts.h"
 #include "api/make_engine.h"
 #include "api/picture_report.h"
 #include "base/machine.h"
@@ -30,6 +31,7 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         Film film = make_film(settings.image, make_instance_mattes(scene, settings.image.layers));
         const std::string identity = describe_samples(settings, scene_hash);
         if (checkpoints.resume) film.read(*checkpoints.resume, identity);
+        join_parts(checkpoints.parts, settings, scene, film);
         std::shared_ptr<const PreparedScene> prepared =
             prepare_scene(std::move(scene), settings, SceneOrigin::camera);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);

@@ -94,6 +94,11 @@ class Film {
     void add_lights(int x, int y, std::span<const Vec3f> lights);
     const LightLayers& light_layers() const { return light_layers_; }
 
+    /// Adds all samples of a film of the same layers whose window lies in that of this one. Its samples
+    /// follow the first `before` of each of its pixels; throws Error{bad_input} where this film has another
+    /// number.
+    void join(const Film& part, uint32_t before);
+
     /// As if the pixels of `window` had never got a sample.
     void clear(const Window& window);
 

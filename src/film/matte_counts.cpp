@@ -8,17 +8,22 @@
 
 namespace relief {
 
-void MatteCounts::add(size_t pixel, uint32_t id) {
+void MatteCounts::add(size_t pixel, uint32_t id, uint32_t samples) {
     const std::span<Slot> slots(&slots_[pixel * kSlots], kSlots);
     Slot* least = &slots.front();
     for (Slot& slot : slots) {
         if (slot.id == id || slot.id == 0) {
-            slot = {id, slot.samples + 1};
+            slot = {id, slot.samples + samples};
             return;
         }
         if (slot.samples < least->samples) least = &slot;
     }
-    *least = {id, least->samples + 1};
+    *least = {id, least->samples + samples};
+}
+
+void MatteCounts::join(size_t pixel, const MatteCounts& other, size_t other_pixel) {
+    for (const Slot& slot : std::span(&other.slots_[other_pixel * kSlots], kSlots))
+        if (slot.samples > 0) add(pixel, slot.id, slot.samples);
 }
 
 void MatteCounts::clear(size_t first, size_t count) {

@@ -22,7 +22,10 @@ class MatteCounts {
 
     explicit MatteCounts(size_t pixel_count) : slots_(pixel_count * kSlots) {}
 
-    void add(size_t pixel, uint32_t id);
+    /// `samples`: how many fell on it, one after another.
+    void add(size_t pixel, uint32_t id, uint32_t samples = 1);
+    /// Those of a pixel of other counts.
+    void join(size_t pixel, const MatteCounts& other, size_t other_pixel);
     /// Pixels [first, first + count) have seen nothing.
     void clear(size_t first, size_t count);
     /// Writes 2 * kMatteRanks floats.

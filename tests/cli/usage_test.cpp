@@ -244,7 +244,8 @@ TEST_F(Usage, an_output_that_cannot_be_written_is_refused_before_the_render) {
 }
 
 TEST_F(Usage, every_help_fits_on_a_screen_and_goes_to_stdout) {
-    for (const std::string verb : {"render", "inspect", "scene", "compare", "merge", "bench", "devices"}) {
+    for (const std::string verb :
+         {"render", "inspect", "scene", "compare", "merge", "bench", "devices", "farm"}) {
         const CommandResult result = run({verb, "--help"});
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_EQ(result.errors, "");

@@ -14,21 +14,23 @@ import tempfile
 
 import pages
 
-# Pictures of one sample.
+# Pictures of one sample; of farms one frame.
 SMALL = """#!/usr/bin/env python3
 import os, sys
 words = sys.argv[1:]
-if words and words[0] == "render":
+if words[:1] == ["render"] or words[:2] == ["farm", "plan"]:
     for option, value in (("--size", "48x27"), ("--spp", "1"), ("--bounces", "1")):
         if option in words:
             words[words.index(option) + 1] = value
         elif option != "--spp" or "--samples" not in words:
             words += [option, value]
+    if words[0] == "farm":
+        words[words.index("--frames") + 1] = "1"
     words.append("-q")
 os.execv(%(relief)r, ["relief", *words])
 """
 # Only these need more than the samples have.
-NEEDS_DEVICE = ("--engine vulkan", "--device")
+NEEDS_DEVICE = ("--engine vulkan", "--device", "--to slurm", "--submit slurm")
 
 
 def run(command: str, folder: pathlib.Path, path: pathlib.Path) -> subprocess.CompletedProcess:
@@ -90,7 +92,7 @@ def check_commands(page: pathlib.Path, root: pathlib.Path, relief: str, given: p
             elif re.match(r"(xvfb-run )?relief view", command):
                 left_out.append(f"{name}: {command}: a window; its options were checked")
             elif any(need in command for need in NEEDS_DEVICE):
-                left_out.append(f"{name}: {command}: needs a device")
+                left_out.append(f"{name}: {command}: needs a device or a cluster")
             else:
                 done = run(command, folder, path)
                 if done.returncode != 0:
@@ -128,7 +130,8 @@ def collect_help(relief: str) -> str:
 
     verbs = ["render", "inspect", "convert", "scene", "compare", "merge", "devices", "bench"]
     suites = re.findall(r"(?m)^  ([a-z]+[0-9]?) ", help_of("bench"))
-    return "".join([help_of(), *(help_of(v) for v in verbs), *(help_of("bench", s) for s in suites)])
+    return "".join([help_of(), *(help_of(v) for v in verbs), *(help_of("bench", s) for s in suites),
+                    *(help_of("farm", v) for v in ("plan", "submit", "work", "status", "merge", "retry"))])
 
 
 def main() -> int:

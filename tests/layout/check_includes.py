@@ -31,7 +31,7 @@ ALLOWED = {
 
 # What an application may include of src/ besides include/relief.
 PYTHON = ["base", "math"]  # the same for python/src, which has the reports of apps as well
-APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["base", "lab"], "viewer": ["base"]}
+APPS = {"common": ["base"], "bench": ["base", "lab"], "gpu": ["lab"], "cli": ["base", "lab"], "farm": ["base"], "viewer": ["base"]}
 
 # Libraries that only these folders may see; a folder stands for all below it. Tests may see all of them.
 LIBRARIES = {

@@ -20,8 +20,12 @@ def print_help(*verb):
 verbs = re.findall(r"^  (\w+)", print_help().partition("Subcommands:")[2], re.M)
 if "render" not in verbs:
     raise SystemExit("no verbs found in the help text")
+farm_verbs = re.findall(r"^  (\w+)", print_help("farm").partition("Subcommands:")[2], re.M)
 page = (source / "docs/man/relief.1").read_text()
 faults += [f"relief.1 lacks the verb {verb}" for verb in verbs if f".It Cm {verb} " not in page and f".It Cm {verb}\n" not in page]
+farm_line = re.search(r"^\.It Cm farm (.*)$", page, re.M)[1].split(" | ")
+if "plan" not in farm_verbs or sorted(farm_line) != sorted(farm_verbs):
+    faults.append(f"relief.1 has the verbs {farm_line} of farm, not {farm_verbs}")
 codes = re.findall(r"\w+ = (\d+)", (source / "include/relief/error.h").read_text())
 codes += re.findall(r"= (\d+)", (source / "apps/common/exit_codes.h").read_text())
 status = page.partition(".Sh EXIT STATUS")[2]
@@ -51,6 +55,11 @@ with tempfile.TemporaryDirectory() as folder:
     offered = subprocess.run(["bash", "-c", script], capture_output=True, text=True).stdout.split()
     if sorted(offered) != ["--bottom", "--bottom-cache", "--bounce-levels", "--bounces"]:
         faults.append(f"bash offers {offered} for `relief render --bo`")
+    for words, number, wanted in (("relief farm m", 2, ["merge"]), ("relief farm plan --ti", 3, ["--tiles"])):
+        script = f"source {folder}/relief; COMP_WORDS=({words}); COMP_CWORD={number}; _relief; echo ${{COMPREPLY[@]}}"
+        offered = subprocess.run(["bash", "-c", script], capture_output=True, text=True).stdout.split()
+        if offered != wanted:
+            faults.append(f"bash offers {offered} for `{words}`")
 for fault in faults:
     print(fault)
 raise SystemExit(1 if faults else 0)

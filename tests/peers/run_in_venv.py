@@ -11,7 +11,7 @@ import sys
 
 SKIPPED = 77
 VERSIONS = {"bpy": ["bpy==4.5.15", "bpy==4.2.0"], "cryptomatte_api": ["cryptomatte-api==1.0.0"],
-            "mitsuba": ["mitsuba==3.9.1 numpy"], "pyoidn": ["pyoidn==2.5.1.0"]}  # the first that can be had
+            "mitsuba": ["mitsuba==3.9.1 numpy"], "pyoidn": ["pyoidn==2.5.1.0"], "openjd": ["openjd-cli==0.8.0"]}  # the first that can be had
 
 
 def install(folder, package):

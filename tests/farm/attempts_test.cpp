@@ -1,0 +1,158 @@
+#include "farm/attempts.h"
+
+#include <chrono>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "farm/job_states.h"
+#include "relief/error.h"
+
+namespace relief::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FarmStates : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "relief-farm-XXXXXX").string();
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        job_.folder = pattern;
+        for (int frame = 1; frame <= 3; ++frame) job_.frames.push_back(frame);
+        job_.tiles = 2, job_.passes = 2, job_.spp = 5;
+    }
+    void TearDown() override {
+        std::error_code ignored;
+        fs::remove_all(job_.folder, ignored);
+    }
+    void add(uint32_t task, const std::string& who, AttemptState state) const {
+        Attempt attempt;
+        attempt.task = task, attempt.who = who, attempt.state = state;
+        attempt.rays = 1000, attempt.milliseconds = 500, attempt.exit_code = 3;
+        fs::create_directories(get_state_folder(job_, task));
+        std::ofstream(get_attempt_file(job_, attempt)) << "";
+    }
+
+    FarmJob job_;
+};
+
+TEST_F(FarmStates, a_name_says_all_of_an_attempt) {
+    Attempt attempt;
+    attempt.task = 123, attempt.who = "node7-99-5", attempt.state = AttemptState::done;
+    attempt.rays = 456, attempt.milliseconds = 789;
+    EXPECT_EQ(name_attempt(attempt), "123.node7-99-5.done.456.789");
+    for (const AttemptState state :
+         {AttemptState::running, AttemptState::done, AttemptState::partial, AttemptState::failed,
+          AttemptState::lost, AttemptState::corrupt, AttemptState::retried}) {
+        attempt.state = state, attempt.exit_code = 5;
+        const std::optional<Attempt> read = parse_attempt_name(name_attempt(attempt));
+        ASSERT_TRUE(read);
+        EXPECT_EQ(name_attempt(*read), name_attempt(attempt));
+    }
+    for (const char* name : {"", "1", "1.a", "1.a.gone", "x.a.done.1.2", "1.a.done.1", "1.a.failed",
+                             "1.a.done.1.2.3", "-1.a.running", "clock-vm-1-2"})
+        EXPECT_FALSE(parse_attempt_name(name)) << name;
+}
+
+TEST_F(FarmStates, tasks_cut_frames_into_bands_and_ranges) {
+    EXPECT_EQ(job_.task_count(), 12u);
+    EXPECT_EQ(describe_task(job_, find_task(job_, 0)), "frame 1, tile 0/2, samples 0:2");
+    EXPECT_EQ(describe_task(job_, find_task(job_, 11)), "frame 3, tile 1/2, samples 2:5");
+    EXPECT_THROW(find_task(job_, 12), Error);
+    EXPECT_EQ(format_tasks(parse_tasks(job_, "5,0-2,7,6,1")), "0-2,5-7");
+    for (const char* list : {"", "12", "3-1", "a", "0-12", "-1", "1,,2"})
+        EXPECT_THROW(parse_tasks(job_, list), Error) << list;
+    RenderSettings settings;
+    settings.image.width = 8, settings.image.height = 9;
+    apply_task(find_task(job_, 11), settings);
+    EXPECT_EQ(settings.image.crop, (Window{0, 4, 8, 9}));
+    EXPECT_EQ(settings.image.first_sample, 2);
+    EXPECT_EQ(settings.image.spp, 3);
+}
+
+TEST_F(FarmStates, the_best_attempt_counts_and_all_are_told) {
+    add(0, "a-1-1", AttemptState::lost), add(0, "a-1-2", AttemptState::done);
+    add(1, "a-1-1", AttemptState::done), add(1, "a-1-2", AttemptState::done);
+    add(2, "a-1-1", AttemptState::partial);
+    add(3, "a-1-1", AttemptState::failed), add(3, "a-1-2", AttemptState::partial);
+    add(4, "a-1-1", AttemptState::running);
+    add(5, "a-1-1", AttemptState::lost);
+    add(6, "a-1-1", AttemptState::corrupt), add(6, "a-1-2", AttemptState::retried);
+    const JobStates states = read_states(job_);
+    const std::vector<TaskState> expected = {TaskState::done,    TaskState::done,    TaskState::partial,
+                                             TaskState::failed,  TaskState::running, TaskState::waiting,
+                                             TaskState::waiting, TaskState::waiting, TaskState::waiting,
+                                             TaskState::waiting, TaskState::waiting, TaskState::waiting};
+    EXPECT_EQ(states.tasks, expected);
+    EXPECT_EQ(states.lost, 2u);
+    EXPECT_EQ(states.partial, 2u);
+    EXPECT_EQ(states.corrupt, 1u);
+    EXPECT_EQ(states.retried, 1u);
+    EXPECT_EQ(states.twice, 1u);
+    EXPECT_EQ(states.done_attempts, 3u);
+    EXPECT_EQ(states.rays, 3000u);
+    EXPECT_EQ(states.running.size(), 1u);
+    EXPECT_EQ(states.failed.size(), 1u);
+    EXPECT_EQ(states.files_looked_at, 1u) << "the one that runs";
+    EXPECT_EQ(list_tasks(states, {TaskState::failed, TaskState::partial}), (std::vector<uint32_t>{2, 3}));
+}
+
+TEST_F(FarmStates, silence_makes_an_attempt_stale) {
+    job_.heartbeat_s = 0.05;
+    add(4, "elsewhere-1-1", AttemptState::running);
+    fs::last_write_time(job_.folder / "state/000000/4.elsewhere-1-1.running",
+                        fs::file_time_type::clock::now() - std::chrono::seconds(2));
+    const JobStates states = read_states(job_);
+    EXPECT_EQ(states.tasks[4], TaskState::stale);
+    ASSERT_EQ(states.stale.size(), 1u);
+    declare_lost(job_, states.stale);
+    EXPECT_EQ(read_states(job_).tasks[4], TaskState::waiting);
+    EXPECT_EQ(read_states(job_).lost, 1u);
+}
+
+TEST_F(FarmStates, a_process_of_this_machine_that_is_gone_is_stale_at_once) {
+    const pid_t process = fork();
+    if (process == 0) _exit(0);
+    waitpid(process, nullptr, 0);
+    Attempt attempt;
+    attempt.who = make_attempt_name();
+    EXPECT_FALSE(is_process_gone(attempt)) << "this one";
+    const size_t dash = attempt.who.find('-');
+    attempt.who = attempt.who.substr(0, dash) + "-" + std::to_string(process) + "-1";
+    EXPECT_TRUE(is_process_gone(attempt));
+    attempt.who = "elsewhere-" + std::to_string(process) + "-1";
+    EXPECT_FALSE(is_process_gone(attempt)) << "of another machine nothing is known";
+}
+
+TEST_F(FarmStates, an_attempt_whose_file_is_gone_still_ends) {
+    Attempt before, after;
+    before.task = after.task = 7, before.who = after.who = "a-1-1", after.state = AttemptState::partial;
+    fs::create_directories(get_state_folder(job_, 7));
+    change_attempt(job_, before, after);
+    EXPECT_EQ(read_states(job_).tasks[7], TaskState::partial);
+}
+
+/// Links that lead nowhere have names, and nothing that could be opened or looked at.
+TEST_F(FarmStates, of_640000_tasks_names_alone_are_read) {
+    constexpr uint32_t kStep = 160; // making all of the names would take longer than reading them
+    job_.frames.resize(10000), job_.tiles = 64, job_.passes = 1;
+    for (int k = 0; k < 10000; ++k) job_.frames[size_t(k)] = k + 1;
+    for (uint32_t task = 0; task < job_.task_count(); task += kStep) {
+        const fs::path folder = get_state_folder(job_, task);
+        if (task % 1000 < kStep) fs::create_directories(folder);
+        Attempt attempt;
+        attempt.task = task, attempt.who = "a-1-1", attempt.state = AttemptState::done;
+        fs::create_symlink("nowhere", folder / name_attempt(attempt));
+    }
+    const JobStates states = read_states(job_);
+    EXPECT_EQ(states.count(TaskState::done), 4000u);
+    EXPECT_EQ(states.folders_read, 640u);
+    EXPECT_EQ(states.names_read, 4000u);
+    EXPECT_EQ(states.files_looked_at, 0u);
+}
+
+} // namespace
+} // namespace relief::cli
