@@ -35,7 +35,7 @@ class SceneExport:
                 name = instance.object.original.name_full
                 self._report.add("object", name, f"{instance.object.type.lower()} objects are not taken over")
         self.scene.lights = lights
-        self.scene.environment = export_world(self._depsgraph.scene.world, self._report)
+        self.scene.environment = export_world(self._depsgraph, self._report)
         self._report_render()
         return self.scene
 

@@ -163,7 +163,10 @@ class WorldReader:
         return relief.Environment(file=turn_picture(texels, matrix, is_mirror_ball), **keys)
 
 
-def export_world(world, report):
+def export_world(depsgraph, report):
+    """The Environment at the depsgraph's time: `depsgraph.scene` is the original one, whose world stays behind."""
+    world = depsgraph.scene.world
+    world = world.evaluated_get(depsgraph) if world else None
     name = world.name if world else ""
     environment = WorldReader(lambda text: report.add("world", name, text)).read(world)
     if np.any(np.array(environment["color"]) < 0):

@@ -1,8 +1,8 @@
 """Subdivision, instances, animation, cameras and the border: the same pictures as by Cycles."""
 import bpy
 import numpy as np
-from support import (BlenderTest, aim, displace, main, make_grid, make_hook, make_image, make_material, make_object,
-                     subdivide)
+from support import (BlenderTest, Layers, aim, displace, main, make_grid, make_hook, make_image, make_material, make_object,
+                     set_world, subdivide)
 
 CUBE = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 CUBE_FACES = [(0, 1, 3, 2), (2, 3, 7, 6), (6, 7, 5, 4), (4, 5, 1, 0), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -127,15 +127,20 @@ class Geometry(BlenderTest):
         ob.location = (0, 0, 1.5)
         ob.keyframe_insert("location", frame=2)
         scene = bpy.context.scene
+        strength = set_world(scene.world, (1, 1, 1)).inputs["Strength"]
+        for frame, value in ((1, 0.0), (2, 1.0)):
+            strength.default_value = value
+            strength.keyframe_insert("default_value", frame=frame)
         scene.frame_start, scene.frame_end, scene.render.engine = 1, 2, "RELIEF"
         settings = scene.render.image_settings
         settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
         scene.render.filepath = str(self.folder / "frame_####.exr")
         scene.relief.samples = 2
         bpy.ops.render.render(animation=True)
-        from support import Layers
-        first, second = (Layers(self.folder / f"frame_000{i}.exr").mask for i in (1, 2))
-        self.assertGreater(np.mean(first != second), 0.02)
+        first, second = (Layers(self.folder / f"frame_000{i}.exr") for i in (1, 2))
+        self.assertGreater(np.mean(first.mask != second.mask), 0.02)
+        self.assertEqual(first.brightness, 0)
+        self.assertGreater(second.brightness, 0.01)
 
     def test_lens_shift_sensor_fit_and_border(self):
         make_material(make_cube())
