@@ -54,13 +54,13 @@ def make_view(frame, projection, basis, report):
     is_orthographic = projection[3][3] == 1
     if abs(projection[1][1] / projection[0][0] * height / width - 1) > 1e-3:
         report("pixels that are not square are taken for square ones")
-    tangent, offset = 1 / projection[1][1], 0.0
+    tangent, offset, target = 1 / projection[1][1], 0.0, origin + forward
     if is_orthographic:
         report(f"an orthographic view is a view from {FAR} times its height away")
         offset = FAR * 2 * tangent
         origin = origin - forward * offset
         tangent = tangent / offset
-    camera = relief.Camera(from_=origin.tolist(), to=(origin + forward).tolist(), up=up.tolist(),
+    camera = relief.Camera(from_=origin.tolist(), to=target.tolist(), up=up.tolist(),
                            fov_degrees=math.degrees(2 * math.atan(tangent)), focus_distance=1.0,
                            shift=find_shift(projection, width, height))
     crop = border or (0, 0, width, height)

@@ -157,7 +157,9 @@ class Geometry(BlenderTest):
     def test_an_orthographic_view_is_nearly_one_and_named(self):
         make_material(make_cube())
         self.camera.data.type, self.camera.data.ortho_scale = "ORTHO", 5
-        self.compare()
+        for name, place, target in (("even", (0, -6, 3), (0, 0, 0)), ("uneven", (2.1, -6.1, 0.37), (0.03, 0, 0.1))):
+            aim(self.camera, place, target)
+            self.compare(name)
         self.assertTrue(any("orthographic" in line for line in self.report()), self.report())
 
     def test_depth_of_field(self):
