@@ -21,6 +21,14 @@ class View(NamedTuple):
     tangent: float       # of half the vertical angle of the whole picture
     depth_offset: float  # by how much depths are too large
 
+    @property
+    def matrix(self):
+        """4x4 of Relief's world from where Blender has the camera."""
+        result = np.eye(4)
+        result[:3, :3] = np.stack([self.right, self.up, -self.forward], -1)
+        result[:3, 3] = np.array(self.camera["from"]) + self.depth_offset * self.forward
+        return result
+
 
 def find_basis(matrix_world):
     """(origin, right, up, forward) of a camera in Relief's axes; its scale does not count."""
@@ -91,14 +99,15 @@ def find_border(render, width, height):
     return x0, height - y1, x1, height - y0
 
 
-def export_camera(depsgraph, report):
-    """The View of a final render. `report` is a Report."""
+def export_camera(depsgraph, report, original=None):
+    """The View of a final render. `report` is a Report; `original`: a camera in place of the scene's."""
     scene, render = depsgraph.scene, depsgraph.scene.render
     factor = render.resolution_percentage / 100
     width, height = max(int(render.resolution_x * factor), 1), max(int(render.resolution_y * factor), 1)
-    if scene.camera is None:
+    original = original or scene.camera
+    if original is None:
         raise RuntimeError("the scene has no camera")
-    camera = scene.camera.evaluated_get(depsgraph)
+    camera = original.evaluated_get(depsgraph)
 
     def tell(text):
         report.add("camera", camera.name, text)

@@ -4,6 +4,7 @@ import relief
 
 from . import passes, statistics
 from .camera_export import export_camera
+from .motion_export import MotionExport
 from .properties import find_threads
 from .render_job import RenderJob
 from .report import Report
@@ -39,10 +40,13 @@ class ReliefEngine(bpy.types.RenderEngine):
         self.update_stats("", "Relief: taking over the scene")
         try:
             self._view = export_camera(depsgraph, self._report)
-            self._scene = SceneExport(depsgraph, self._report).run()
+            exporter = SceneExport(depsgraph, self._report)
+            self._scene = exporter.run()
             self._scene.camera = self._view.camera
-        except (RuntimeError, relief.Error) as fault:
-            self._fault = fault
+            self._motion = MotionExport(depsgraph, exporter, self._view, self._report)
+            self._motion.run(self.frame_set)
+        except (RuntimeError, ValueError, OSError, relief.Error) as fault:
+            self._fault = fault.with_traceback(None)  # which would hold the engine when Blender lets go of it
 
     def render(self, depsgraph):
         if self._fault is not None:
@@ -51,13 +55,14 @@ class ReliefEngine(bpy.types.RenderEngine):
         scene = depsgraph.scene
         layers = passes.find_layers(depsgraph.view_layer)
         passes.report_missing(depsgraph.view_layer, self._report)
-        job = RenderJob(self._scene, make_settings(scene, self._view, layers))
+        job = RenderJob(self._scene, {**make_settings(scene, self._view, layers), **self._motion.settings})
         self._scene = None
         try:
             self._follow(job, depsgraph)
         finally:
             job.cancel()
             job.join()
+            self._motion.clean_up()
 
     def _follow(self, job, depsgraph):
         while True:

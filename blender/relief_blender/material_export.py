@@ -26,16 +26,22 @@ class ExportedMaterial(NamedTuple):
 
 
 class MaterialExport:
-    """Adds materials to a relief.Scene. What Relief has no keys for goes to the report under their names."""
+    """Adds materials to a relief.Scene. What Relief has no keys for goes to the report under their names.
+
+    `sources`: the original bpy.types.Material of each name. `derived`: displacements that are others but for a factor of
+    their scale, as (name of the other, factor)."""
 
     def __init__(self, scene, report):
         self._scene, self._report, self._done = scene, report, {}
+        self.sources, self.derived = {}, {}
 
     def export(self, material):
         """`material` may be None: Blender's grey."""
         key = material.name_full if material else ""
         if key not in self._done:
             self._done[key] = self._make(material)
+            if material is not None:
+                self.sources[key] = material.original
         return self._done[key]
 
     def _make(self, material):

@@ -123,6 +123,7 @@ class MeshExport:
             framed = relief.Displacement(**self._scene.displacements[displacement])
             framed["frame"] = "file"
             self._scene.displacements[name] = framed
+            self._materials.derived[name] = (displacement, 1.0)
         return name
 
     def _add(self, evaluated, arrays, material, **keys):

@@ -1,4 +1,6 @@
 """A depsgraph of Blender as a relief.Scene: objects and instances, materials, lights, world. Not the camera."""
+from typing import NamedTuple
+
 import numpy as np
 import relief
 
@@ -12,14 +14,34 @@ MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SILENT_TYPES = {"CAMERA", "ARMATURE", "LATTICE", "EMPTY", "SPEAKER", "LIGHT_PROBE"}
 
 
+class Instance(NamedTuple):
+    """What became of an instance: entries of objects and lights of the scene."""
+    objects: list
+    lights: list
+
+
+def identify(instance):
+    """What a DepsgraphObjectInstance is known by from one time to another."""
+    name = instance.object.original.name_full
+    if not instance.is_instance:
+        return name, "", ()
+    return name, instance.parent.original.name_full, tuple(instance.persistent_id)
+
+
+def is_made_by_nodes(instance):
+    """Geometry nodes make instances of meshes that are no object's own."""
+    return instance.is_instance and instance.parent.original == instance.object.original
+
+
 class SceneExport:
     """`scene` is the relief.Scene, filled by run()."""
 
     def __init__(self, depsgraph, report):
         self.scene = relief.Scene()
+        self.instances = {}  # Instance by identify()
+        self.materials = MaterialExport(self.scene, report)
         self._depsgraph, self._report = depsgraph, report
-        materials = MaterialExport(self.scene, report)
-        self._meshes = MeshExport(self.scene, materials, depsgraph, report)
+        self._meshes = MeshExport(self.scene, self.materials, depsgraph, report)
         self._has_catchers = depsgraph.scene.render.film_transparent
 
     def run(self):
@@ -41,14 +63,14 @@ class SceneExport:
 
     def _report_render(self):
         render = self._depsgraph.scene.render
-        if render.use_motion_blur:
-            self._report.add("scene", "", "motion blur is left out")
         if render.use_freestyle:
             self._report.add("scene", "", "Freestyle is left out")
 
     def _add_light(self, instance, lights):
         known = {entry["name"] for entry in self.scene.objects}
-        lights.append(export_light(instance.object, instance.matrix_world, self._report, known))
+        light = export_light(instance.object, instance.matrix_world, self._report, known)
+        lights.append(light)
+        self.instances[identify(instance)] = Instance([], [light])
 
     def _is_shown(self, evaluated):
         """Whether the camera sees an object; what it would be to other rays is named where it differs."""
@@ -70,19 +92,21 @@ class SceneExport:
         evaluated = instance.object
         if not self._is_shown(evaluated):
             return
-        is_made_by_nodes = instance.is_instance and instance.parent.original == evaluated.original
         matrix = axes.convert_matrix(instance.matrix_world)
         if abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
             self._report.add("object", evaluated.original.name_full, "it has no volume by its scale: it is left out")
             return
-        for part in self._meshes.export(evaluated, is_made_by_nodes):
+        entries = []
+        for part in self._meshes.export(evaluated, is_made_by_nodes(instance)):
             entry = {"name": evaluated.original.name_full, "mesh": part.mesh, "material": part.material,
                      "transform": {"matrix": matrix.reshape(-1).tolist()}}
             if part.displacement is not None:
                 entry["displacement"] = self._scale_displacement(part, matrix, evaluated)
             if evaluated.is_shadow_catcher and self._has_catchers:
                 entry["shadow_catcher"] = True
-            self.scene.objects.append(entry)
+            entries.append(entry)
+        self.scene.objects += entries
+        self.instances[identify(instance)] = Instance(entries, [])
 
     def _scale_displacement(self, part, matrix, evaluated):
         """Heights in the world's unit, on an object that is scaled: a displacement of its own for each scale."""
@@ -96,4 +120,5 @@ class SceneExport:
             scaled = relief.Displacement(**self.scene.displacements[part.displacement])
             scaled["scale"] = scaled["scale"] / float(np.mean(scales))
             self.scene.displacements[name] = scaled
+            self.materials.derived[name] = (part.displacement, 1 / float(np.mean(scales)))
         return name
