@@ -40,6 +40,45 @@ class RELIEF_PT_surfaces(_ReliefPanel, bpy.types.Panel):
         self.layout.operator("relief.bake_map")
 
 
+class RELIEF_PT_motion_blur(_ReliefPanel, bpy.types.Panel):
+    """Blender's own settings, which each engine has a panel of its own for."""
+    bl_label = "Motion Blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        render = context.scene.render
+        self.layout.use_property_split = True
+        self.layout.active = render.use_motion_blur
+        self.layout.prop(render, "motion_blur_position", text="Position")
+        self.layout.prop(render, "motion_blur_shutter")
+
+
+class RELIEF_PT_object_motion_blur(_ReliefPanel, bpy.types.Panel):
+    """The settings that objects have for Cycles."""
+    bl_label = "Motion Blur"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and hasattr(context.object, "cycles")
+
+    def draw_header(self, context):
+        self.layout.active = context.scene.render.use_motion_blur
+        self.layout.prop(context.object.cycles, "use_motion_blur", text="")
+
+    def draw(self, context):
+        own = context.object.cycles
+        self.layout.use_property_split = True
+        self.layout.active = context.scene.render.use_motion_blur and own.use_motion_blur
+        self.layout.prop(own, "motion_steps", text="Steps")
+        if context.object.type not in {"CAMERA", "LIGHT"}:
+            self.layout.prop(own, "use_deform_motion", text="Deformation")
+
+
 class RELIEF_PT_viewport(_ReliefPanel, bpy.types.Panel):
     bl_label = "Viewport"
 
@@ -98,8 +137,9 @@ class RELIEF_PT_passes(_ReliefPanel, bpy.types.Panel):
             self.layout.prop(context.view_layer, name)
 
 
-CLASSES = [RELIEF_PT_sampling, RELIEF_PT_light_paths, RELIEF_PT_surfaces, RELIEF_PT_viewport, RELIEF_PT_device,
-           RELIEF_PT_film, RELIEF_PT_passes, RELIEF_PT_statistics]
+CLASSES = [RELIEF_PT_sampling, RELIEF_PT_light_paths, RELIEF_PT_surfaces, RELIEF_PT_motion_blur,
+           RELIEF_PT_object_motion_blur, RELIEF_PT_viewport, RELIEF_PT_device, RELIEF_PT_film, RELIEF_PT_passes,
+           RELIEF_PT_statistics]
 
 
 def register():

@@ -8,7 +8,7 @@ from support import (BlenderTest, Layers, add_light, aim, displace, main, make_g
                      make_object, set_world, subdivide)
 from test_geometry import CUBE, CUBE_FACES
 
-from relief_blender import motion_export, poses
+from relief_blender import motion_export, panels, poses
 
 SAMPLES = 64
 # All pixels of Relief see the same 64 times, multiples of the golden ratio: an interval has at most 2/64 too many or too few.
@@ -426,6 +426,15 @@ class Times(Motion):
     @staticmethod
     def fail_to_export(*arguments):
         raise RuntimeError("no such world")
+
+    def test_the_panels_are_those_of_blenders_settings(self):
+        ob = make_box()
+        scene = bpy.context.scene
+        bpy.context.view_layer.objects.active = ob
+        for engine, is_shown in (("RELIEF", True), ("CYCLES", False)):
+            scene.render.engine = engine
+            for panel in (panels.RELIEF_PT_motion_blur, panels.RELIEF_PT_object_motion_blur):
+                self.assertEqual(panel.poll(bpy.context), is_shown)
 
     def test_a_curve_and_a_rolling_shutter_are_told(self):
         scene = bpy.context.scene
