@@ -21,8 +21,8 @@ def _require_usd() -> None:
 
 def load(path: str | os.PathLike, time: float | None = None, *, report: list | None = None, camera: str | None = None,
          purposes: typing.Sequence[str] = ("default", "render"), meters: bool = False, subdivision_level: int | None = None,
-         vector_space: str = "tangent", folder: str | os.PathLike | None = None) -> relief.Scene:
-    """The scene of a USD file (usd, usda, usdc, usdz) at one time.
+         vector_space: str = "tangent", folder: str | os.PathLike | None = None, frames: str | None = None) -> relief.Scene:
+    """The scene of a USD file (usd, usda, usdc, usdz) at one time, or over a range of frames.
 
     time: time code; None: the first frame of the stage, or the earliest sample of each attribute.
     report: a list that gets one line for each prim of which something is not taken over.
@@ -31,15 +31,17 @@ def load(path: str | os.PathLike, time: float | None = None, *, report: list | N
     meters: lengths become meters by the stage's metersPerUnit; else they stay as they are.
     subdivision_level: of subdivided meshes, 0 to 8; None: 3, and 2 or 1 for meshes of many faces.
     vector_space: what the vectors of MaterialX displacements are: "tangent" (dP/du, dP/dv and the normal) or "object".
-    folder: where textures inside usdz packages and the points of large instancers are written; None: a temporary
-      folder that lasts as long as the scene.
+    folder: where textures inside usdz packages, the points of large instancers and numbered files of meshes whose points
+      change are written; None: a temporary folder that lasts as long as the scene, and such meshes stay as at one frame.
+    frames: of time samples that become keys, "1-24" or "1-100x2,150", time codes; "all": the stage's own range; None: one
+      time. What cannot change is as at `time`, else as at the first frame.
 
     Raises relief.Error with file, prim and a hint; ImportError without usd-core."""
     _require_usd()
     from .loader import Options, load_scene
 
     options = Options(time=time, camera=camera, purposes=tuple(purposes), meters=meters,
-                      subdivision_level=subdivision_level, vector_space=vector_space, folder=folder)
+                      subdivision_level=subdivision_level, vector_space=vector_space, folder=folder, frames=frames)
     return load_scene(os.fspath(path), options, report)
 
 

@@ -7,7 +7,10 @@ from pxr import UsdGeom
 import relief
 
 from .context import Context, make_error, read_hint
+from .keys import Rules, read_numbers
+from .motion import key_part
 
+MOVING = ("focalLength", "focusDistance", "fStop", "verticalAperture", "horizontalApertureOffset", "verticalApertureOffset")
 TENTHS = 0.1  # focal lengths and apertures are in tenths of scene units
 
 
@@ -29,7 +32,32 @@ def choose_camera(context: Context, settings, items: list):
             context.report.add(item.prim, f"is not the camera of the scene, which is {chosen.prim.GetPath()}")
     camera = UsdGeom.Camera(chosen.prim)
     context.scene.camera = read_camera(context, camera, chosen.matrices)
+    if context.range is not None:
+        add_motion(context, camera)
     return camera
+
+
+def add_motion(context: Context, camera: UsdGeom.Camera) -> None:
+    """The shutter, and keys of what changes."""
+    keys, prim = context.scene.camera, camera.GetPrim()
+    shutter = [float(context.get(camera.GetShutterOpenAttr(), 0.0)), float(context.get(camera.GetShutterCloseAttr(), 0.0))]
+    if shutter[0] > shutter[1]:
+        context.report.add(prim, f"shutter:open {shutter[0]:g} comes after shutter:close {shutter[1]:g}: there is no motion blur")
+    elif shutter != [0, 0]:
+        keys["shutter"] = shutter
+    distance = float(np.linalg.norm(np.subtract(keys["to"], keys["from"])))
+    focus = keys.get("focus_distance", distance)
+
+    def read(matrix: np.ndarray) -> dict:
+        defaults = {"shift": [0.0, 0.0], "aperture_radius": 0.0, "focus_distance": focus}
+        return read_numbers({**defaults, **read_camera(context, camera, matrix)})
+
+    found = key_part(context, prim, MOVING, read, Rules(limits={"from": distance * 1e-3, "to": distance * 1e-3}))
+    if found.get("aperture_radius") == 0:
+        del found["aperture_radius"], found["focus_distance"]
+    if found.get("shift") == [0, 0]:
+        del found["shift"]
+    keys.update(found)
 
 
 def read_camera(context: Context, camera: UsdGeom.Camera, matrix: np.ndarray) -> relief.Camera:

@@ -1,6 +1,7 @@
 """What all readers of a stage share: options, the time, the report, and errors."""
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import os
 import shutil
@@ -23,6 +24,7 @@ class Options:
     subdivision_level: int | None = None
     vector_space: str = "tangent"
     folder: str | os.PathLike | None = None
+    frames: str | None = None
 
 
 class Report:
@@ -46,6 +48,9 @@ class Context:
         self.stage, self.path, self.options = stage, path, options
         self.report = Report()
         self.scene = relief.Scene()
+        self.range = None  # a TimeRange, where frames are asked for
+        self.taken: set = set()  # paths of attributes that keys have been made of
+        self.sequences: set = set()  # names of numbered files
         self.time = find_time(stage, options.time)
         self.unit = UsdGeom.GetStageMetersPerUnit(stage) if options.meters else 1.0
         self.is_z_up = UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z
@@ -56,6 +61,15 @@ class Context:
         self.temporary: str | None = None  # a folder that lasts as long as the scene
         self.documents: list = []  # layers of MaterialX files
         self.baked: set = set()  # paths of the roots of skinned meshes that are posed
+
+    @contextlib.contextmanager
+    def at(self, time: float):
+        """Reads at another time for a while."""
+        before, self.time = self.time, Usd.TimeCode(time)
+        try:
+            yield
+        finally:
+            self.time = before
 
     def get_folder(self) -> str:
         """Where files are written that Relief has to read."""

@@ -12,6 +12,8 @@ import relief
 
 from .assets import resolve_asset
 from .context import Context
+from .keys import ANGLE, Rules, read_numbers
+from .motion import key_part
 from .shading import SPACES, spread
 from .walk import Item
 
@@ -32,15 +34,38 @@ def add_lights(context: Context, items: list, paths_of_names: dict) -> None:
             if not prim.IsA(UsdGeom.Mesh):
                 context.report.add(prim, f"{kind} is not taken over")
             continue
-        keys = reader(context, item)
+        keys = read_light(context, item, reader)
         if keys is None:
             continue
-        for name in ("direction", "up"):
-            if name in keys:
-                keys[name] = read_axis(context, prim, name, keys)
-        keys.update(read_common(context, prim))
+        keys.update(add_motion(context, item, reader, keys))
         keys.update(read_links(context, prim, paths_of_names))
         context.scene.lights.append(relief.Light(**keys))
+
+
+def read_light(context: Context, item: Item, reader) -> dict | None:
+    keys = reader(context, item)
+    if keys is None:
+        return None
+    for name in ("direction", "up"):
+        if name in keys:
+            keys[name] = read_axis(context, item.prim, name, keys)
+    return {**keys, **read_common(context, item.prim)}
+
+
+def add_motion(context: Context, item: Item, reader, keys: dict) -> dict:
+    """Keys of what changes; none where it becomes another kind of light on the way, or none, which is reported as all that
+    stays."""
+    def read(matrix: np.ndarray) -> dict | None:
+        found = read_light(context, Item(item.prim, matrix), reader)
+        is_same = found is not None and found["type"] == keys["type"]
+        return read_numbers(found) if is_same else None
+
+    return key_part(context, item.prim, list_inputs(item.prim), read)
+
+
+def list_inputs(prim: Usd.Prim) -> list:
+    names = (attribute.GetName() for attribute in prim.GetAuthoredAttributes())
+    return [name for name in names if name.startswith("inputs:") and name != "inputs:texture:file"]
 
 
 def read_radiance(context: Context, prim: Usd.Prim) -> float:
@@ -241,14 +266,12 @@ def add_dome(context: Context, item: Item) -> None:
     if context.scene.environment is not None:
         context.report.add(prim, "is a second dome: the first one counts")
         return
-    keys = {"strength": read_radiance(context, prim), "color": read_color(context, prim)}
     texture = read_texture(context, prim)
+    keys = read_dome(context, item, bool(texture))
+    keys.update(key_part(context, prim, list_inputs(prim), lambda matrix: read_dome(context, Item(prim, matrix), bool(texture)),
+                         Rules({"rotate_degrees": ANGLE})))
     if texture:
         keys["file"] = texture["color_texture"]
-        keys["rotate_degrees"] = find_dome_turn(context, item)
-        noted = prim.GetAttribute("relief:rotate_degrees")
-        if noted and noted.Get() is not None and abs((noted.Get() - keys["rotate_degrees"] + 180) % 360 - 180) < 1e-6:
-            keys["rotate_degrees"] = float(noted.Get())
         if context.get(prim.GetAttribute("inputs:texture:format"), "automatic") not in ("automatic", "latlong"):
             context.report.add(prim, "its texture is taken as latitude and longitude")
         noted = prim.GetAttribute("relief:color_space")
@@ -258,6 +281,17 @@ def add_dome(context: Context, item: Item) -> None:
     if prim.GetAttribute("relief:light_group") and prim.GetAttribute("relief:light_group").Get():
         keys["light_group"] = prim.GetAttribute("relief:light_group").Get()
     context.scene.environment = relief.Environment(**keys)
+
+
+def read_dome(context: Context, item: Item, has_picture: bool) -> dict:
+    """Its numbers."""
+    keys = {"strength": read_radiance(context, item.prim), "color": read_color(context, item.prim)}
+    if has_picture:
+        keys["rotate_degrees"] = find_dome_turn(context, item)
+        noted = item.prim.GetAttribute("relief:rotate_degrees")
+        if noted and noted.Get() is not None and abs((noted.Get() - keys["rotate_degrees"] + 180) % 360 - 180) < 1e-6:
+            keys["rotate_degrees"] = float(noted.Get())
+    return keys
 
 
 def read_links(context: Context, prim: Usd.Prim, paths_of_names: dict) -> dict:

@@ -15,6 +15,7 @@ from .lights import add_lights
 from .mtlx_files import add_files
 from .objects import ObjectReader
 from .pictures import read_other_pictures
+from .time_range import read_range, report_other_motion
 from .walk import walk
 
 __all__ = ["Options", "load_scene"]
@@ -64,7 +65,11 @@ def bake_skinning(context: Context) -> None:
     if not roots:
         return
     context.stage.SetEditTarget(context.stage.GetSessionLayer())
-    interval = Gf.Interval(context.time.GetValue(), context.time.GetValue())
+    first = last = context.time.GetValue()
+    if context.range is not None:
+        frames = context.range.list_frames()
+        first, last = frames[0], frames[-1]
+    interval = Gf.Interval(first, last)
     for root in roots:
         if UsdSkel.BakeSkinning(UsdSkel.Root(root), interval):
             context.baked.add(root.GetPath())
@@ -110,15 +115,20 @@ def load_scene(path: str, options: Options, report: list | None) -> relief.Scene
     stage = open_stage(path)
     check_options(options, path)
     context = Context(stage, path, options)
+    context.range = read_range(stage, options, path)
+    if context.range is not None and options.time is None:
+        context.time = Usd.TimeCode(context.range.first)
     complete(context)
     bake_skinning(context)
     objects = ObjectReader(context)
-    cameras, lights = [], []
+    cameras, lights, others = [], [], []
     for item in walk(context, stage.GetPseudoRoot(), context.root):
         prim = item.prim
         if prim.IsA(UsdGeom.Camera):
             cameras.append(item)
-        elif item.is_light():
+            continue
+        others.append(item)
+        if item.is_light():
             lights.append(item)
         elif objects.can_read(prim):
             objects.add(item)
@@ -126,7 +136,10 @@ def load_scene(path: str, options: Options, report: list | None) -> relief.Scene
             context.report.add(prim, f"{prim.GetTypeName()} is not taken over")
         if item.is_light() and objects.can_read(prim):
             context.report.add(prim, "the light of a mesh is not taken over")
-    finish(context, objects, cameras, lights)
+    camera = finish(context, objects, cameras, lights)
+    if context.range is not None:
+        chosen = [item for item in cameras if camera is not None and item.prim == camera.GetPrim()]
+        report_other_motion(context, others + chosen)
     if report is not None:
         report += context.report.lines()
     return context.scene
@@ -146,14 +159,18 @@ def frame_all(scene: relief.Scene) -> dict:
     """A camera that shows everything; without the pictures of the scene, which need not be read for it."""
     bare = relief.Scene()
     bare.meshes = scene.meshes
+    bare.render = {key: value for key, value in scene.render.items() if key == "frames"}
     bare.objects = [{key: value for key, value in entry.items() if key in ("mesh", "transform", "instances")}
                     for entry in scene.objects]
     bare.aim(frame_all=True, size=(scene.render.get("width", 1280), scene.render.get("height", 720)))
     return bare.camera
 
 
-def finish(context: Context, objects: ObjectReader, cameras: list, lights: list) -> None:
+def finish(context: Context, objects: ObjectReader, cameras: list, lights: list):
+    """Returns the camera that is taken, or None."""
     scene = context.scene
+    if context.range is not None:
+        scene.render.update(frames=context.range.text, fps=float(context.stage.GetTimeCodesPerSecond()))
     if not scene.objects:
         raise make_error("has no mesh that can be seen", context.path,
                          "purposes, visibility and the default prim decide what is seen; see the option purposes")
@@ -170,3 +187,4 @@ def finish(context: Context, objects: ObjectReader, cameras: list, lights: list)
         context.report.add("/", "has no camera: one that shows everything is used")
         scene.camera = frame_all(scene)
     read_other_pictures(context)
+    return camera

@@ -10,11 +10,13 @@ import relief
 
 from .context import Context
 from .corners import Faces
+from .deforming import write_moving_mesh
 from .displacements import find_noted
 from .instances import write_instances
 from .manifold import is_manifold
 from .materials import MaterialReader, ReadMaterial
 from .meshes import RawMesh, choose_uvs, make_mesh, read_mesh, refine_mesh
+from .motion import find_carrier
 from .shapes import can_read_shape, read_shape
 from .walk import Item
 
@@ -34,6 +36,7 @@ class ObjectReader:
         self.context, self.materials = context, MaterialReader(context)
         self.raw: dict = {}            # meshes by the prim that holds them
         self.refined: dict = {}        # subdivided ones of several materials, likewise
+        self.refined_uvs: dict = {}    # the uvs that their materials want
         self.manifold: dict = {}       # whether subdivided ones are, likewise
         self.meshes: dict = {}         # names in the scene of parts of them
         self.displacements: dict = {}  # names in the scene by their keys
@@ -87,6 +90,7 @@ class ObjectReader:
         if key not in self.refined:
             wanted = next((part.material.uvs for part in parts if part.material and part.material.uvs), None)
             self.refined[key] = refine_mesh(self.context, raw, wanted)
+            self.refined_uvs[key] = wanted
         fine = self.refined[key]
         for part in parts:
             part.faces = fine.faces.select(part.faces.numbers)
@@ -167,10 +171,19 @@ class ObjectReader:
             while name in self.context.scene.meshes:
                 number += 1
                 name = f"{base}_{number}"
-            self.context.scene.meshes[name] = mesh
+            is_fine = raw is self.refined.get(find_key(raw.prim))
+            moving = write_moving_mesh(self.context, raw.prim, name, lambda: self.remake(raw, part, uvs, with_normals, is_fine))
+            self.context.scene.meshes[name] = moving or mesh
             self.meshes[key] = name
             self.has_uvs[name] = mesh.uvs is not None and len(mesh.uvs) > 0
         return self.meshes[key]
+
+    def remake(self, raw: RawMesh, part: Part, uvs: str | None, with_normals: bool, is_fine: bool) -> relief.Mesh:
+        """A part at another time of the context."""
+        again = read_mesh(self.context, raw.prim)
+        if is_fine:
+            again = refine_mesh(self.context, again, self.refined_uvs[find_key(raw.prim)])
+        return make_mesh(self.context, again, part.faces, uvs, with_normals)
 
     def place(self, item: Item, part: Part, keys: dict) -> None:
         """One object, or one for each place of an instancer, or all of them in one file of points."""
@@ -179,25 +192,43 @@ class ObjectReader:
         matrices = item.matrices.reshape(-1, 4, 4)
         if item.instancer is not None:
             base = f"{item.instancer.GetPath()}{part.prim.GetPath()}"
+        carrier = find_carrier(self.context, item)
+        if carrier is None or item.instancer is not None:
+            matrices = self.leave_out_flat(item, matrices)
+        if carrier is not None:
+            matrices = carrier.compute_rest(matrices) if item.instancer is not None else np.eye(4)[None]
+            if matrices is None:
+                self.context.report.add(item.instancer, "has no extent at the frame, and is left out")
+                return
+        if len(matrices) >= MANY:
+            points = write_instances(self.context, matrices)
+            if points is not None:
+                moved = {} if carrier is None else {"transform": carrier.make_transform(np.eye(4))}
+                self.add_object(base, {**keys, "instances": {"file": points}, **moved}, item, part)
+                return
+        for number, matrix in enumerate(matrices):
+            name = base if len(matrices) == 1 else f"{base}[{number}]"
+            transform = make_still(matrix) if carrier is None else carrier.make_transform(matrix)
+            if transform is None:
+                self.context.report.add(item.prim, "has no extent at any frame, and is left out")
+                continue
+            self.add_object(name, {**keys, **({"transform": transform} if transform else {})}, item, part)
+
+    def leave_out_flat(self, item: Item, matrices: np.ndarray) -> np.ndarray:
         is_flat = ~(np.abs(np.linalg.det(matrices[:, :3, :3])) > 0)
         if is_flat.any() or not np.isfinite(matrices).all():
             self.context.report.add(item.instancer or item.prim, "stands in places without extent, which are left out")
             matrices = matrices[~is_flat & np.isfinite(matrices).all((1, 2))]
-        if len(matrices) >= MANY:
-            points = write_instances(self.context, matrices)
-            if points is not None:
-                self.add_object(base, {**keys, "instances": {"file": points}}, item, part)
-                return
-        for number, matrix in enumerate(matrices):
-            name = base if len(matrices) == 1 else f"{base}[{number}]"
-            entry = dict(keys)
-            if not np.array_equal(matrix, np.eye(4)):
-                entry["transform"] = {"matrix": [float(x) for x in matrix.reshape(-1)]}
-            self.add_object(name, entry, item, part)
+        return matrices
 
     def add_object(self, name: str, entry: dict, item: Item, part: Part) -> None:
         self.context.scene.objects.append({"name": name, **entry})
         self.paths_of_names.setdefault(name, (item.instancer or part.prim).GetPath())
+
+
+def make_still(matrix: np.ndarray) -> dict:
+    """Keys of a transform; none where it changes nothing."""
+    return {} if np.array_equal(matrix, np.eye(4)) else {"matrix": [float(x) for x in matrix.reshape(-1)]}
 
 
 def find_key(prim: Usd.Prim) -> str:

@@ -60,6 +60,8 @@ def walk(context: Context, root: Usd.Prim, base: np.ndarray, depth: int = 0):
         place = stack.pop()
         prim = place.prim
         if is_hidden(context, prim):
+            if context.range is not None and UsdGeom.Imageable(prim).GetVisibilityAttr().ValueMightBeTimeVarying():
+                context.report.add(prim, "visibility changes with time: it is hidden as at the frame")
             continue
         purpose = find_purpose(prim, place.purpose)
         local, is_reset = compute_local(context, prim)
