@@ -54,8 +54,21 @@ void SceneTreeHolder::follow_levels() {
     if (!std::ranges::equal(scene_.instances, trees_->levels, is_same)) start();
 }
 
+bool SceneTreeHolder::is_mostly_changed(std::span<const SurfaceChange> changes) const {
+    size_t all = 0, changed = 0;
+    for (const Surface& surface : scene_.surfaces)
+        if (surface.has_displacement) all += surface.patch_count();
+    for (const SurfaceChange& change : changes)
+        changed += change.is_replaced ? scene_.surfaces[change.surface].patch_count()
+                                      : size_t(std::ranges::count(change.is_changed, 1));
+    return 2 * changed > all;
+}
+
 void SceneTreeHolder::change_scene(std::span<const SurfaceChange> changes) {
     follow_levels();
+    // Boxes of vertices take as long as building what is inside; perhaps few rays come before the next
+    // change.
+    if (trees_->source == BoxSource::vertices && is_mostly_changed(changes)) return start();
     const PatchBoxes boxes(scene_, kernels_, trees_->source);
     for (const SurfaceChange& change : changes) {
         if (!scene_.surfaces[change.surface].has_displacement) continue;

@@ -52,6 +52,7 @@ class SceneTreeHolder {
 
   private:
     void start();
+    bool is_mostly_changed(std::span<const SurfaceChange> changes) const;
     WideBvh make_surface_tree(uint32_t surface, const PatchBoxes& boxes) const;
     std::shared_ptr<SceneTrees> make_trees(BoxSource source) const;
     WideBvh make_instance_tree(std::span<const WideBvh> surfaces) const;

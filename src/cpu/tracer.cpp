@@ -28,6 +28,11 @@ constexpr uint64_t kTimedBatchInterval = 32;
 /// With fewer rays, or less room for trees, the order of rays is not worth its time.
 constexpr size_t kLeastOrdered = 4096, kLeastOrderedRoom = size_t(4) << 20;
 
+size_t count_bytes(const Instance& instance) {
+    const size_t lines = instance.lines ? instance.lines->size() * sizeof(PatchLines) : 0;
+    return sizeof(Instance) + instance.levels->byte_count() + lines;
+}
+
 CacheLimits make_limits(const SurfaceSettings& settings) {
     if (settings.cache_bytes) return {*settings.cache_bytes, *settings.cache_bytes};
     return {kDefaultCacheBytes, std::numeric_limits<size_t>::max()};
@@ -348,8 +353,7 @@ void Tracer::add_statistics(Statistics& statistics) const {
     for (const PolygonTree& tree : self.polygon_trees) statistics.structures_bytes += tree.byte_count();
     statistics.bottom_cache_bytes += self.cache->peak_byte_count();
     for (const Surface& surface : scene_->surfaces) statistics.geometry_bytes += surface.geometry_bytes();
-    for (const Instance& instance : scene_->instances)
-        statistics.geometry_bytes += sizeof(Instance) + instance.levels->byte_count();
+    for (const Instance& instance : scene_->instances) statistics.geometry_bytes += count_bytes(instance);
 }
 
 size_t Tracer::count_plain_bytes() const {
@@ -358,8 +362,7 @@ size_t Tracer::count_plain_bytes() const {
     for (const Surface& surface : scene_->surfaces)
         if (!surface.has_displacement) bytes += surface.geometry_bytes();
     for (const Instance& instance : scene_->instances)
-        if (!scene_->surfaces[instance.surface].has_displacement)
-            bytes += sizeof(Instance) + instance.levels->byte_count();
+        if (!scene_->surfaces[instance.surface].has_displacement) bytes += count_bytes(instance);
     return bytes;
 }
 

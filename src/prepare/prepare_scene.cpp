@@ -143,9 +143,21 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
     return changes;
 }
 
+/// Of instances that are where they were, of surfaces that are as they were.
+void take_over_lines(std::span<const Instance> before, std::span<const SurfaceChange> changes,
+                     PreparedScene& prepared) {
+    for (size_t k = 0; k < std::min(before.size(), prepared.instances.size()); ++k) {
+        Instance& instance = prepared.instances[k];
+        const SurfaceChange& change = changes[instance.surface];
+        if (!change.is_replaced && change.is_changed.empty() && instance.surface == before[k].surface &&
+            instance.world_from_object == before[k].world_from_object)
+            instance.lines = before[k].lines;
+    }
+}
+
 /// Levels, and what follows from them.
-void finish_levels(const RenderSettings& settings, PreparedScene& prepared) {
-    update_scene_levels(prepared, settings);
+void finish_levels(const RenderSettings& settings, PreparedScene& prepared, ViewsToCome views) {
+    update_scene_levels(prepared, settings, views);
     for (uint32_t surface = 0; surface < prepared.surfaces.size(); ++surface)
         prepared.surfaces[surface].mips = choose_scene_mips(prepared, surface);
     prepared.may_enclose_camera = may_enclose_camera(prepared);
@@ -185,7 +197,7 @@ SceneParts prepare_scene_parts(Scene scene, const RenderSettings& settings, Scen
     parts.prepared.scene = std::make_shared<PreparedScene>();
     PreparedScene& prepared = *parts.prepared.scene;
     prepare_parts(scene, settings, origin, nullptr, polygons, parts);
-    finish_levels(settings, prepared);
+    finish_levels(settings, prepared, polygons == Polygonal::keep ? ViewsToCome::many : ViewsToCome::none);
     if (settings.surface.mode == SurfaceMode::tessellated) drop_detail(prepared);
     if (settings.surface.mode == SurfaceMode::tessellated)
         tessellate_scene(prepared, available_memory_bytes());
@@ -203,9 +215,10 @@ std::optional<std::vector<SurfaceChange>> prepare_next_scene(Scene scene, const 
     std::vector<SurfaceChange> changes =
         prepare_parts(scene, settings, SceneOrigin::given, &parts, Polygonal::keep, next);
     PreparedScene& prepared = *next.prepared.scene;
-    finish_levels(settings, prepared);
     const bool has_same_surfaces =
         next.surfaces == parts.surfaces && prepared.surfaces.size() == surface_count;
+    if (has_same_surfaces) take_over_lines(parts.prepared.scene->instances, changes, prepared);
+    finish_levels(settings, prepared, ViewsToCome::many);
     if (has_same_surfaces) mark_other_mips(mips, prepared, changes);
     add_space_warnings(prepared);
     // In place, since engines refer to it.

@@ -43,6 +43,7 @@ struct Instance {
     bool is_in_place = false;                 ///< object space is world space
     bool is_shadow_catcher = false;           ///< of the object
     std::shared_ptr<const LevelField> levels;
+    std::shared_ptr<const std::vector<PatchLines>> lines; ///< of levels to come; null: not measured
 };
 
 /// One image of a displacement, as the surfaces that use it read it.

@@ -274,6 +274,7 @@ void SceneEditor::update_levels(const std::vector<SurfaceChange>& changes) {
     for (Instance& instance : scene_->instances)
         for (const SurfaceChange& change : changes) {
             if (instance.surface != change.surface || instance.levels->is_uniform()) continue;
+            instance.lines = nullptr;
             LevelField field = *instance.levels;
             field.update(scene_->surfaces[change.surface], instance.world_from_object, scene_->levels,
                          change.is_changed);
@@ -310,7 +311,7 @@ std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const 
     scene.camera = camera;
     scene.camera.from = camera.from - scene.origin, scene.camera.to = camera.to - scene.origin;
     scene.width = settings.image.width, scene.height = settings.image.height;
-    update_scene_levels(scene, settings);
+    update_scene_levels(scene, settings, ViewsToCome::many);
     std::vector<SurfaceChange> changes;
     for (uint32_t k = 0; k < scene.surfaces.size(); ++k)
         if (scene.surfaces[k].has_displacement)

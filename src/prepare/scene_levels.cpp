@@ -21,13 +21,19 @@ LevelFieldConfig make_level_config(const Camera& camera, const RenderSettings& s
 
 } // namespace
 
-void update_scene_levels(PreparedScene& scene, const RenderSettings& settings) {
+void update_scene_levels(PreparedScene& scene, const RenderSettings& settings, ViewsToCome views) {
     scene.levels = make_level_config(scene.camera, settings);
+    const bool measures = views == ViewsToCome::many && scene.levels.fixed_level < 0;
     parallel_for("level_fields", scene.instances.size(), 1, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             Instance& instance = scene.instances[k];
-            instance.levels = std::make_shared<const LevelField>(LevelField::compute(
-                scene.surfaces[instance.surface], instance.world_from_object, scene.levels));
+            const Surface& surface = scene.surfaces[instance.surface];
+            if (measures && !instance.lines)
+                instance.lines = std::make_shared<const std::vector<PatchLines>>(
+                    measure_lines(surface, instance.world_from_object));
+            instance.levels = std::make_shared<const LevelField>(
+                instance.lines ? LevelField::choose(surface, *instance.lines, scene.levels)
+                               : LevelField::compute(surface, instance.world_from_object, scene.levels));
         }
     });
 }

@@ -40,6 +40,23 @@ TEST(LevelField, agrees_across_shared_edges_and_patches_are_at_least_as_fine) {
     EXPECT_GE(std::count_if(seen.begin(), seen.end(), [](int count) { return count > 0; }), 3);
 }
 
+TEST(LevelField, is_the_same_from_lines_that_were_measured_before) {
+    const Surface surface = make_seamed_surface();
+    const Affine place = make_scale({1, 2, 1});
+    const std::vector<PatchLines> lines = measure_lines(surface, place);
+    ASSERT_EQ(lines.size(), surface.patch_count());
+    LevelFieldConfig config;
+    config.pixel_angle = 0.04f;
+    for (const Vec3f& camera : {Vec3f{-1, -1, 1.5f}, Vec3f{2, 3, 0.2f}, Vec3f{0, 0, 900}, Vec3f{1, 1, 0}}) {
+        config.camera = camera;
+        EXPECT_TRUE(LevelField::choose(surface, lines, config) ==
+                    LevelField::compute(surface, place, config));
+    }
+    EXPECT_FALSE(LevelField::choose(surface, lines, config) == LevelField::compute(surface, {}, config));
+    config.fixed_level = 3;
+    EXPECT_TRUE(LevelField::choose(surface, lines, config) == LevelField::compute(surface, place, config));
+}
+
 TEST(LevelField, is_finite_with_the_camera_inside_and_capped_at_one_cell_a_texel) {
     const Displacement displacement = test::make_displacement(test::make_constant(100, 20, {0, 0, 0}));
     const Surface surface = make_surface(test::make_plane(), &displacement, {});

@@ -1,6 +1,7 @@
 // Levels from the size on the screen: one level an edge, so that neighbours agree wherever they meet.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,6 +17,22 @@ struct LevelFieldConfig {
     float pixel_angle = 1e-3f; ///< size of a pixel at distance 1, scene units
 };
 
+/// A displaced line in world space, as far as its level depends on it.
+struct LineMeasure {
+    double length = 0, radius = 0; ///< of its points; of the sphere about them
+    Vec3f center{};
+    int cap = 0; ///< the highest level that the map is worth
+};
+
+/// The lines that the levels of a patch are chosen by.
+struct PatchLines {
+    std::array<LineMeasure, 4> edges;
+    std::array<LineMeasure, 2> middles; ///< along u and along v
+};
+
+/// One a patch; empty without displacement.
+std::vector<PatchLines> measure_lines(const Surface& surface, const Affine& world_from_object);
+
 /// Levels of all patches of one object, packed into one word a patch. Thread safe but for `update`.
 class LevelField {
   public:
@@ -25,6 +42,10 @@ class LevelField {
     /// 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
+
+    /// The same from lines that were measured before, so that another view takes little time.
+    static LevelField choose(const Surface& surface, std::span<const PatchLines> lines,
+                             const LevelFieldConfig& config);
 
     /// Recomputes the levels of marked patches (a byte each) after a change of their displacement.
     void update(const Surface& surface, const Affine& world_from_object, const LevelFieldConfig& config,
@@ -40,6 +61,8 @@ class LevelField {
     friend bool operator==(const LevelField&, const LevelField&) = default;
 
   private:
+    template <class Find>
+    static LevelField fill(const Surface& surface, const LevelFieldConfig& config, const Find& find_levels);
     void find_max_level();
 
     std::vector<uint32_t> packed_; ///< one a patch; empty: `fixed_` everywhere
