@@ -88,13 +88,15 @@ struct ImageSettings {
     /// that find_gaps knows what is missing; empty and 0: not known.
     Window whole_window;
     int whole_samples = 0;
-    /// Any of depth N N_camera Ng P albedo uv id samples variance cost; shadow, which pictures with a shadow
-    /// catcher always have, as their alpha is made of it; guide_albedo guide_N, of what is seen in mirrors
-    /// and clear glass (relief/denoise.h); diffuse_direct diffuse_indirect specular_direct specular_indirect
-    /// transmission_direct transmission_indirect emission background, whose sum is the colour; direct, of
-    /// these all that are not indirect; light_NAME, the part of it that a group of lights gives; CryptoObject
-    /// CryptoMaterial, which are of Cryptomatte 1.2: six ranks of id and coverage a pixel, their names in the
-    /// picture's metadata.
+    /// Any of depth N N_camera Ng P albedo uv id samples variance cost; motion, of what is seen in the middle
+    /// of a pixel at the time of the picture: pixels to the right and down from where it is when the shutter
+    /// opens to where it is when it closes (Session::render_moving(), else 0); shadow, which pictures with a
+    /// shadow catcher always have, as their alpha is made of it; guide_albedo guide_N, of what is seen in
+    /// mirrors and clear glass (relief/denoise.h); diffuse_direct diffuse_indirect specular_direct
+    /// specular_indirect transmission_direct transmission_indirect emission background, whose sum is the
+    /// colour; direct, of these all that are not indirect; light_NAME, the part of it that a group of lights
+    /// gives; CryptoObject CryptoMaterial, which are of Cryptomatte 1.2: six ranks of id and coverage a
+    /// pixel, their names in the picture's metadata.
     std::vector<std::string> layers;
 };
 

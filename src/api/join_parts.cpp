@@ -4,7 +4,6 @@
 #include <istream>
 #include <memory>
 
-#include "api/instance_mattes.h"
 #include "api/picture_report.h"
 #include "relief/error.h"
 
@@ -12,10 +11,11 @@ namespace relief {
 
 namespace {
 
-void join_part(const FilmPart& part, RenderSettings settings, const Scene& scene, Film& film) {
+void join_part(const FilmPart& part, RenderSettings settings, uint64_t scene_hash,
+               const std::shared_ptr<const InstanceMattes>& mattes, Film& film) {
     const int before = part.first_sample - settings.image.first_sample;
     settings.image.crop = part.window, settings.image.first_sample = part.first_sample;
-    Film read = make_film(settings.image, make_instance_mattes(scene, settings.image.layers));
+    Film read = make_film(settings.image, mattes);
     const Window &inner = read.window(), &outer = film.window();
     const bool is_inside = inner.x0 >= outer.x0 && inner.y0 >= outer.y0 && inner.x1 <= outer.x1 &&
                            inner.y1 <= outer.y1 && before >= 0;
@@ -23,19 +23,19 @@ void join_part(const FilmPart& part, RenderSettings settings, const Scene& scene
         throw Error(ErrorKind::bad_input, {"it is not of the pixels and samples of this picture", "", ""});
     const std::unique_ptr<std::istream> stream = part.open();
     if (!stream || !*stream) throw Error(ErrorKind::bad_input, {"it cannot be read", "", ""});
-    read.read(*stream, describe_samples(settings, scene.hash));
+    read.read(*stream, describe_samples(settings, scene_hash));
     film.join(read, uint32_t(before));
 }
 
 } // namespace
 
-void join_parts(const std::vector<FilmPart>& parts, const RenderSettings& settings, const Scene& scene,
-                Film& film) {
+void join_parts(const std::vector<FilmPart>& parts, const RenderSettings& settings, uint64_t scene_hash,
+                const std::shared_ptr<const InstanceMattes>& mattes, Film& film) {
     std::vector<const FilmPart*> order;
     for (const FilmPart& part : parts) order.push_back(&part);
     std::ranges::stable_sort(order, {}, [](const FilmPart* part) { return part->first_sample; });
     for (const FilmPart* part : order) try {
-            join_part(*part, settings, scene, film);
+            join_part(*part, settings, scene_hash, mattes, film);
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::bad_input) throw;
             throw Error(error.kind(), {error.message(), part->name, error.hint()});

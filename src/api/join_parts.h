@@ -1,6 +1,8 @@
 // A picture from the sums that other renders took of its parts.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "film/film.h"
@@ -9,7 +11,8 @@
 namespace relief {
 
 /// Adds the samples of all parts to the film of the picture, lower ones first; as Checkpoints::parts says.
-void join_parts(const std::vector<FilmPart>& parts, const RenderSettings& settings, const Scene& scene,
-                Film& film);
+/// `scene_hash`, `mattes`: of the picture.
+void join_parts(const std::vector<FilmPart>& parts, const RenderSettings& settings, uint64_t scene_hash,
+                const std::shared_ptr<const InstanceMattes>& mattes, Film& film);
 
 } // namespace relief

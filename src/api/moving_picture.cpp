@@ -83,7 +83,10 @@ bool render_samples(Film& film, const ImageSettings& image, const RenderControl&
     for (int last = std::max(film.passes.target - 1, 0); last < image.spp; ++last) {
         for (int sample = find_first_lacking(film, end_with(image, last)); sample <= last; ++sample) {
             if (control.observer && control.observer->is_cancelled()) return false;
-            stage.move(image.first_sample + sample, end_with(image, sample));
+            // Which blocks take part was chosen above, for all that they lack.
+            ImageSettings part = end_with(image, sample);
+            part.noise = 0;
+            stage.move(image.first_sample + sample, part);
             if (observer) observer->start_sample(sample);
             if (!stage.render(film, RenderControl(observer ? &*observer : nullptr))) return false;
             pauses.call();

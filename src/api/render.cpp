@@ -28,10 +28,11 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
     const Timer total;
     with_threads(settings.device.threads, [&] {
         // First, so that a picture too large for memory is rejected before the scene is prepared.
-        Film film = make_film(settings.image, make_instance_mattes(scene, settings.image.layers));
+        const auto mattes = make_instance_mattes(scene, settings.image.layers);
+        Film film = make_film(settings.image, mattes);
         const std::string identity = describe_samples(settings, scene_hash);
         if (checkpoints.resume) film.read(*checkpoints.resume, identity);
-        join_parts(checkpoints.parts, settings, scene, film);
+        join_parts(checkpoints.parts, settings, scene_hash, mattes, film);
         std::shared_ptr<const PreparedScene> prepared =
             prepare_scene(std::move(scene), settings, SceneOrigin::camera);
         std::unique_ptr<Engine> engine = make_engine(prepared, settings);

@@ -1,13 +1,19 @@
 #include "relief/session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <ostream>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "api/instance_mattes.h"
+#include "api/join_parts.h"
 #include "api/make_engine.h"
+#include "api/motion_vectors.h"
 #include "api/moving_picture.h"
 #include "api/picture_report.h"
 #include "base/machine.h"
@@ -73,7 +79,7 @@ struct Session::Implementation {
     }
 
     /// Those of a picture to come.
-    RenderSettings check_image(const ImageSettings& image, const Camera& camera) const {
+    RenderSettings check_image(const ImageSettings& image, const Camera& camera, bool has_catchers) const {
         if (image.layers != layers)
             throw Error(ErrorKind::usage,
                         {"a session keeps its layers", "image.layers", "begin another session"});
@@ -82,12 +88,12 @@ struct Session::Implementation {
         validate_settings(changed);
         validate_camera(camera);
         validate_method(changed, camera);
-        return complete_settings(changed, editor->scene()->has_shadow_catchers);
+        return complete_settings(changed, has_catchers);
     }
 
     void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
         const Timer timer;
-        const RenderSettings changed = check_image(image, camera);
+        const RenderSettings changed = check_image(image, camera, editor->scene()->has_shadow_catchers);
         need_engine();
         settings = changed;
         film.reset();
@@ -99,7 +105,9 @@ struct Session::Implementation {
     void change_scene(SceneUpdate update, const ImageSettings& image) {
         check_use();
         const Timer timer;
-        settings = check_image(image, update.camera);
+        settings = check_image(image, update.camera,
+                               update.scene ? has_shadow_catchers(*update.scene)
+                                            : editor->scene()->has_shadow_catchers);
         film.reset();
         if (update.scene) mattes = make_instance_mattes(*update.scene, settings.image.layers);
         if (!move(std::move(update), settings.image)) start_engine();
@@ -129,8 +137,38 @@ struct Session::Implementation {
         return changes && engine->change_scene(*changes, image);
     }
 
-    /// The same in the middle of a picture.
-    void move_sample(SceneUpdate update, const ImageSettings& image) {
+    /// One picture names each object once.
+    void check_objects(const Scene& scene) const {
+        const auto refuse = [](const char* what) {
+            throw Error(ErrorKind::bad_input,
+                        {std::string(what) + " while the shutter is open", "objects",
+                         "let them change between two frames, or set camera.shutter to [0, 0]"});
+        };
+        const PreparedScene& before = *editor->scene();
+        if (scene.objects.size() != before.instances.size()) refuse("objects come or go");
+        for (size_t k = 0; k < scene.objects.size(); ++k)
+            if (scene.objects[k].is_shadow_catcher != before.instances[k].is_shadow_catcher)
+                refuse("an object becomes a shadow catcher, or is one no longer,");
+        const auto others = make_instance_mattes(scene, settings.image.layers);
+        if (others && (others->objects != mattes->objects || others->materials != mattes->materials))
+            refuse("with layers of Cryptomatte, objects change their names or materials");
+    }
+
+    /// The scene at another time of the same picture.
+    void move_sample(double time, const UpdateScene& update_scene, const ImageSettings& image) {
+        try {
+            SceneUpdate update = update_scene(time);
+            if (update.scene) check_objects(*update.scene);
+            put_sample(std::move(update), image);
+        } catch (const Error& error) {
+            const std::string where = error.where().empty() ? std::string() : error.where() + ", ";
+            throw Error(error.kind(),
+                        {error.message(), fmt::format("{}at frame {:.4g}", where, time), error.hint()},
+                        error.further());
+        }
+    }
+
+    void put_sample(SceneUpdate update, const ImageSettings& image) {
         if (move(std::move(update), image)) return;
         keep_counts(*engine, counts);
         engine.reset(); // so that a device does not hold two
@@ -138,6 +176,11 @@ struct Session::Implementation {
         changed.image = image;
         engine = make_engine(editor->scene(), changed);
     }
+
+    bool has_motion_layer() const {
+        return std::ranges::find(settings.image.layers, kMotionLayer) != settings.image.layers.end();
+    }
+    void find_motions(double frame, const UpdateScene& update, const Camera& camera);
 
     template <class Trace> RenderResult show(RenderObserver* observer, const Trace& trace);
 
@@ -176,6 +219,7 @@ bool Session::Implementation::trace_moving(double frame, const UpdateScene& upda
     const std::string identity = describe_samples(settings, scene_hash);
     film = std::make_unique<Film>(make_film(settings.image, mattes));
     if (checkpoints.resume) film->read(*checkpoints.resume, identity);
+    join_parts(checkpoints.parts, settings, scene_hash, mattes, *film);
     RenderControl control(observer);
     control.save.interval_s = checkpoints.interval_s;
     if (checkpoints.save)
@@ -186,9 +230,10 @@ bool Session::Implementation::trace_moving(double frame, const UpdateScene& upda
     show_pictures(*film, space, control);
     const MovingStage stage{
         [&](int sample, const ImageSettings& image) {
-            move_sample(update(find_sample_time(camera, frame, sample)), image);
+            move_sample(find_sample_time(camera, frame, sample), update, image);
         },
         [&](Film& target, const RenderControl& part) { return engine->render(target, part); }};
+    if (has_motion_layer()) find_motions(frame, update, camera);
     try {
         const bool is_complete = render_samples(*film, settings.image, control, stage);
         if (control.save.call) control.save.call();
@@ -197,6 +242,22 @@ bool Session::Implementation::trace_moving(double frame, const UpdateScene& upda
         if (control.save.call) control.save.call(); // samples are added whole
         throw;
     }
+}
+
+/// Ends at the time when the shutter closes.
+void Session::Implementation::find_motions(double frame, const UpdateScene& update, const Camera& camera) {
+    const MotionVectors vectors(*engine, *editor->scene(), film->window());
+    const auto find_places = [&](float time) {
+        move_sample(frame + double(time), update, settings.image);
+        return vectors.find_places(*editor->scene());
+    };
+    const std::vector<Vec2f> from = find_places(camera.shutter_open);
+    std::vector<Vec2f> motions = find_places(camera.shutter_close);
+    for (size_t k = 0; k < motions.size(); ++k) {
+        const Vec2f motion{motions[k].x - from[k].x, motions[k].y - from[k].y};
+        motions[k] = std::isfinite(motion.x) && std::isfinite(motion.y) ? motion : Vec2f{};
+    }
+    film->set_motions(std::move(motions));
 }
 
 double find_sample_time(const Camera& camera, double frame, int sample) {

@@ -32,6 +32,7 @@ enum class Source {
     variance,
     cost,
     shadow,
+    motion,
     guide,
     direct,
     light_kind,
@@ -53,7 +54,7 @@ constexpr LayerKind make_light_kind(size_t kind) {
 }
 
 // In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 26> kLayerKinds{{
+constexpr std::array<LayerKind, 27> kLayerKinds{{
     {"depth", Source::depth, {"Z", "", ""}, 0},
     {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
     {"N_camera", Source::camera_normal, {"X", "Y", "Z"}, 3},
@@ -66,6 +67,7 @@ constexpr std::array<LayerKind, 26> kLayerKinds{{
     {"variance", Source::variance, {"R", "G", "B"}, 3},
     {"cost", Source::cost, {"Y", "", ""}, 1},
     {"shadow", Source::shadow, {"C", "L", "U"}, 3},
+    {kMotionLayer, Source::motion, {"X", "Y", ""}, 0},
     {kDenoiserGuides[0], Source::guide, {"R", "G", "B"}, 3},
     {kDenoiserGuides[1], Source::guide, {"X", "Y", "Z"}, 3},
     {kDirectLayer, Source::direct, {"R", "G", "B"}, 3},
@@ -158,7 +160,8 @@ void add_layer_sums(double* sums, Source source, const FilmSums& added) {
     case Source::depth:
     case Source::id:
     case Source::samples:
-    case Source::guide: // Film::add_lights
+    case Source::motion: // Film::set_motions
+    case Source::guide:  // Film::add_lights
     case Source::direct:
     case Source::light_kind:
     case Source::light_group:
@@ -334,6 +337,11 @@ void Film::add_lights(int x, int y, std::span<const Vec3f> lights) {
     }
 }
 
+void Film::set_motions(std::vector<Vec2f> motions) {
+    DCHECK(motions.size() == counts_.size());
+    motions_ = std::move(motions);
+}
+
 void Film::clear(const Window& window) {
     const size_t width = size_t(window.x1 - window.x0);
     const auto fill = [&](auto& values, size_t first, size_t stride, auto value) {
@@ -392,6 +400,9 @@ void Film::write_layer(size_t pixel, const Layer& layer, const PictureSpace& spa
         return;
     case Source::samples:
         *target = float(counts_[pixel]);
+        return;
+    case Source::motion:
+        if (!motions_.empty()) target[0] = motions_[pixel].x, target[1] = motions_[pixel].y;
         return;
     case Source::variance:
         for (size_t c = 0; c < 3; ++c)

@@ -70,6 +70,9 @@ struct PassState {
     std::vector<uint8_t> is_active; ///< blocks that take part in it; empty: all
 };
 
+/// Of render_moving(); see ImageSettings::layers.
+inline constexpr const char* kMotionLayer = "motion";
+
 enum class ErrorEstimate { off, on };
 
 /// Accumulates in the order of the calls: one pixel must be fed by one thread at a time, samples in rising
@@ -94,6 +97,9 @@ class Film {
     void add_lights(int x, int y, std::span<const Vec3f> lights);
     const LightLayers& light_layers() const { return light_layers_; }
 
+    /// The layer motion: one a pixel of the window, row by row; without, nothing has moved.
+    void set_motions(std::vector<Vec2f> motions);
+
     /// Adds all samples of a film of the same layers whose window lies in that of this one. Its samples
     /// follow the first `before` of each of its pixels; throws Error{bad_input} where this film has another
     /// number.
@@ -102,11 +108,11 @@ class Film {
     /// As if the pixels of `window` had never got a sample.
     void clear(const Window& window);
 
-    /// R G B A and the layers. Colour, alpha, light, guides, N, Ng, P, albedo, uv and cost are means over the
-    /// samples (normals normalised again, P and uv over the samples that hit); depth and id are of the
-    /// nearest first hit; variance is that of the mean; mattes are shares of the samples. Pixels without
-    /// samples are 0, depth infinity. With the layer shadow, alpha holds what is missing of the light of
-    /// shadow catchers.
+    /// R G B A and the layers, of which motion is as it was set. Colour, alpha, light, guides, N, Ng, P,
+    /// albedo, uv and cost are means over the samples (normals normalised again, P and uv over the samples
+    /// that hit); depth and id are of the nearest first hit; variance is that of the mean; mattes are shares
+    /// of the samples. Pixels without samples are 0, depth infinity. With the layer shadow, alpha holds what
+    /// is missing of the light of shadow catchers.
     Image resolve(const PictureSpace& space = {}) const;
 
     /// The least and the greatest number of samples that a pixel has.
@@ -160,6 +166,7 @@ class Film {
     std::vector<uint32_t> hit_counts_; ///< samples a pixel that hit; empty unless P or uv is requested
     std::vector<float> depths_;        ///< nearest first hit; empty unless depth or id is requested
     std::vector<uint32_t> ids_;
+    std::vector<Vec2f> motions_;
     std::shared_ptr<const InstanceMattes> mattes_;
     std::optional<MatteCounts> objects_, materials_; ///< where these layers are requested
 };

@@ -1,8 +1,10 @@
 // Motion blur: the mean of still pictures at the times of its samples, bit for bit.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <sstream>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -123,6 +125,61 @@ TEST(MotionBlur, goes_on_from_a_checkpoint) {
     EXPECT_TRUE(render_blur(settings, nullptr, reading).image.pixels == expected.pixels);
 }
 
+/// A plane that is carried along with its map, before a camera that stands still, then one that turns.
+TEST(MotionBlur, says_how_far_things_move_over_the_picture) {
+    RenderSettings settings = make_settings(1);
+    settings.image.layers = {"motion"};
+    settings.surface.level = 4; // at all times
+    const auto render_with = [&](const std::function<void(Scene&, float)>& change) {
+        const auto make = [&](double frame) {
+            Scene scene = make_scene(kFrame);
+            change(scene, float(frame - kFrame));
+            return scene;
+        };
+        Session session(make(kFrame), settings, SessionUse::scenes);
+        return session
+            .render_moving(kFrame,
+                           [&](double frame) {
+                               Scene scene = make(frame);
+                               const Camera camera = scene.camera;
+                               return SceneUpdate{std::move(scene), camera, 5};
+                           })
+            .image;
+    };
+    // Up by half the distance of things, in heights of the picture, over 0.75 frames.
+    const Scene still = make_scene(kFrame);
+    const float distance = length(still.camera.to - still.camera.from);
+    const float height = 2 * std::tan(still.camera.fov_degrees * 3.14159265f / 360) * distance;
+    const Image turned = render_with([&](Scene& scene, float t) {
+        const Vec3f view = normalize(scene.camera.to - scene.camera.from);
+        const Vec3f up = cross(normalize(cross(view, scene.camera.up)), view);
+        scene.camera.from = scene.camera.from - up * (t * height),
+        scene.camera.to = scene.camera.to - up * (t * height);
+    });
+    const size_t x = turned.find_channel("motion.X").value(), y = turned.find_channel("motion.Y").value();
+    int hits = 0;
+    for (int row = 0; row < 36; ++row)
+        for (int column = 0; column < 48; ++column) {
+            EXPECT_NEAR(turned.at(column, row, x), 0, 1e-3f);
+            if (std::fabs(turned.at(column, row, y)) < 1e-3f) continue; // the sky is far away
+            ++hits;
+            EXPECT_LT(turned.at(column, row, y), -0.75f * 36 * 0.6f);
+            EXPECT_GT(turned.at(column, row, y), -0.75f * 36 * 2.0f);
+        }
+    EXPECT_GT(hits, 200);
+    EXPECT_LT(hits, 48 * 36 - 200);
+    const Image grown = render_with([](Scene& scene, float t) {
+        scene.objects[0].world_from_object.rows[0].x = 1 + t; // of the torus about the origin
+    });
+    float least = 0, greatest = 0;
+    for (int column = 0; column < 48; ++column) {
+        least = std::min(least, grown.at(column, 18, x)),
+        greatest = std::max(greatest, grown.at(column, 18, x));
+    }
+    EXPECT_LT(least, -1);
+    EXPECT_GT(greatest, 1);
+}
+
 /// Blocks that come back late have their samples at the times of these.
 TEST(MotionBlur, asks_for_samples_by_noise) {
     RenderSettings settings = make_settings(64);
@@ -142,6 +199,33 @@ TEST(MotionBlur, asks_for_samples_by_noise) {
     for (size_t c = 0; c < 3; ++c)
         EXPECT_EQ(result.image.pixels[pixel * result.image.channels.size() + c],
                   whole.pixels[pixel * whole.channels.size() + c]);
+}
+
+TEST(MotionBlur, refuses_objects_that_come_or_go_in_one_picture) {
+    const auto render_with = [](const std::function<void(Scene&)>& change, const char* layer) {
+        RenderSettings settings = make_settings(4);
+        settings.image.layers = {layer};
+        settings.image.background = Vec3f{};
+        Session session(make_scene(kFrame), settings, SessionUse::scenes);
+        try {
+            session.render_moving(kFrame, [&](double frame) {
+                SceneUpdate update = update_scene(frame);
+                if (frame > kFrame) change(*update.scene);
+                return update;
+            });
+        } catch (const Error& error) {
+            EXPECT_NE(error.where().find("at frame 1"), std::string::npos) << error.where();
+            return error.message();
+        }
+        return std::string();
+    };
+    const auto add = [](Scene& scene) { scene.objects.push_back(scene.objects[0]); };
+    const auto rename = [](Scene& scene) { scene.objects[0].name = "another"; };
+    const auto catch_shadows = [](Scene& scene) { scene.objects[0].is_shadow_catcher = true; };
+    EXPECT_NE(render_with(add, "depth").find("objects come or go"), std::string::npos);
+    EXPECT_NE(render_with(rename, "CryptoObject").find("names or materials"), std::string::npos);
+    EXPECT_EQ(render_with(rename, "depth"), "");
+    EXPECT_NE(render_with(catch_shadows, "depth").find("shadow catcher"), std::string::npos);
 }
 
 TEST(MotionBlur, tells_progress_of_the_whole_and_heeds_an_end) {

@@ -1,0 +1,26 @@
+// The layer motion: how far what is seen moves over the picture while the shutter is open.
+#pragma once
+
+#include <vector>
+
+#include "engine/engine.h"
+#include "prepare/prepared_scene.h"
+
+namespace relief {
+
+/// What the middles of the pixels of a window see at the time of the picture, and where it is at others.
+class MotionVectors {
+  public:
+    /// By an engine of the scene as it is then, pinhole rays.
+    MotionVectors(const Engine& engine, const PreparedScene& scene, const Window& window);
+
+    /// Where it is on the picture of the scene at another time, pixels; NaN: that scene has it no longer, or
+    /// it lies behind its camera.
+    std::vector<Vec2f> find_places(const PreparedScene& scene) const;
+
+  private:
+    std::vector<Ray> rays_;
+    std::vector<RayHit> hits_;
+};
+
+} // namespace relief
