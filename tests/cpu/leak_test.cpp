@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "cpu/tracer.h"
 #include "math/affine.h"
+#include "prepare/scene_edit.h"
 #include "support/bodies.h"
 #include "surface/smooth_shapes.h"
 
@@ -181,36 +182,26 @@ void expect_mixed_levels(const PreparedScene& scene, const Case& c) {
     EXPECT_GT(coarse_edges, 20);
 }
 
-class LeakTest : public testing::TestWithParam<Case> {};
-
-TEST_P(LeakTest, every_ray_from_inside_hits) {
-    const Case& c = GetParam();
-    RenderSettings settings;
-    settings.surface.level = c.level;
-    settings.image.height = 96;
-    settings.surface.pixel_error = 12; // coarse enough that the view, not the map, decides the levels
-    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(c), settings);
-    expect_mixed_levels(*prepared, c);
-    const cpu::Tracer tracer(prepared, settings);
+/// Rays from inside the body that hit nothing.
+uint64_t count_leaks(const PreparedScene& prepared, const cpu::Tracer& tracer, Body body,
+                     uint64_t first_batch, uint64_t batches) {
     std::atomic<uint64_t> leaks{0};
-    const uint64_t batches = (ray_count() + kBatch - 1) / kBatch;
     parallel_for("leaks", batches, 1, [&](size_t begin, size_t end) {
         std::vector<cpu::TraceRay> rays(kBatch);
         std::vector<cpu::TraceHit> hits(kBatch);
-        for (size_t batch = begin; batch < end; ++batch) {
+        for (size_t batch = first_batch + begin; batch < first_batch + end; ++batch) {
             Random random{batch * 0x9e3779b97f4a7c15ull + 1};
             for (size_t k = 0; k < kBatch; ++k) {
-                const Instance& instance = prepared->instances[batch % prepared->instances.size()];
+                const Instance& instance = prepared.instances[batch % prepared.instances.size()];
                 rays[k].lod_bias = uint32_t(k / 1024);
-                rays[k].origin =
-                    transform_point(instance.world_from_object, make_inner_point(c.body, random));
+                rays[k].origin = transform_point(instance.world_from_object, make_inner_point(body, random));
                 if (k / 16 % 2 == 1 && k % 16 > 0) {
                     // Every other run of sixteen is a narrow bundle: a packet.
                     rays[k] = rays[k - k % 16];
                     rays[k].direction += random.direction() * (0.1f * length(rays[k].direction));
                 } else {
                     rays[k].direction =
-                        k % 2 ? make_target(*prepared, instance, rays[k].lod_bias, random) - rays[k].origin
+                        k % 2 ? make_target(prepared, instance, rays[k].lod_bias, random) - rays[k].origin
                               : random.direction();
                 }
             }
@@ -222,8 +213,62 @@ TEST_P(LeakTest, every_ray_from_inside_hits) {
             }
         }
     });
-    EXPECT_EQ(leaks, 0u);
+    return leaks;
+}
+
+RenderSettings make_leak_settings(int level) {
+    RenderSettings settings;
+    settings.surface.level = level;
+    settings.image.height = 96;
+    settings.surface.pixel_error = 12; // coarse enough that the view, not the map, decides the levels
+    return settings;
+}
+
+class LeakTest : public testing::TestWithParam<Case> {};
+
+TEST_P(LeakTest, every_ray_from_inside_hits) {
+    const Case& c = GetParam();
+    const RenderSettings settings = make_leak_settings(c.level);
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(c), settings);
+    expect_mixed_levels(*prepared, c);
+    const uint64_t batches = (ray_count() + kBatch - 1) / kBatch;
+    EXPECT_EQ(count_leaks(*prepared, cpu::Tracer(prepared, settings), c.body, 0, batches), 0u);
     RecordProperty("rays", std::to_string(batches * kBatch));
+}
+
+/// Motion blur: bodies turn, stretch and change their relief, whose scale and texels are between two times'.
+TEST(MotionLeak, every_ray_from_inside_hits_at_any_time) {
+    constexpr uint64_t kTimes = 100;
+    const Case c{"moving", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::instances};
+    const Scene start = make_scene(c);
+    const Texture& texels = *start.displacements[0].tiles[0].texture;
+    const RenderSettings settings = make_leak_settings(kAutoLevel);
+    SceneEditor editor(start, settings, SessionUse::scenes);
+    cpu::Tracer tracer(editor.scene(), settings);
+    Random random{7};
+    const uint64_t batches = (ray_count() * std::size(kCases) / kTimes + kBatch - 1) / kBatch;
+    uint64_t leaks = 0;
+    for (uint64_t time = 0; time < kTimes; ++time) {
+        Scene scene = start;
+        scene.meshes[0] = {};
+        scene.meshes[0].name = start.meshes[0].name;
+        for (Object& object : scene.objects)
+            object.world_from_object = compose(
+                compose(object.world_from_object, make_rotation_degrees({0, 90 * random.uniform(), 0})),
+                make_scale({1, 0.6f + random.uniform(), 1}));
+        scene.displacements[0].scale = {random.uniform(), random.uniform(), random.uniform()};
+        if (time % 3 == 0) {
+            auto blend = std::make_shared<Texture>(texels);
+            const float weight = random.uniform();
+            for (float& value : blend->floats) value *= weight;
+            scene.displacements[0].tiles[0].texture = std::move(blend);
+        }
+        const auto changes = editor.change_scene(std::move(scene), settings);
+        ASSERT_TRUE(changes && tracer.change_scene(*changes));
+        leaks += count_leaks(*editor.scene(), tracer, c.body, time * batches, batches);
+    }
+    EXPECT_EQ(leaks, 0u);
+    RecordProperty("rays", std::to_string(kTimes * batches * kBatch));
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, LeakTest, testing::ValuesIn(kCases),
