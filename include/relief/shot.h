@@ -30,6 +30,9 @@ class Shot {
   public:
     /// Reads the file, but none that it names. Throws as load_scene.
     explicit Shot(const std::filesystem::path& file, const MeshReaderSettings& reader = {});
+    /// Of text, as parse_scene_text takes it; a mesh in `assets` is used up by the first call of load().
+    Shot(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
+         const MeshReaderSettings& reader = {});
     ~Shot();
     Shot(Shot&&) noexcept;
     Shot& operator=(Shot&&) noexcept;

@@ -293,6 +293,17 @@ TEST_F(ShotUpdates, list_files_that_an_open_shutter_reads) {
     EXPECT_HAS(message_of([&] { list("[-0.25, 0.25]", 3); }), "wave.0002.exr");
 }
 
+TEST_F(ShotUpdates, list_the_buffers_of_gltf_files) {
+    write("body.gltf",
+          R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AAAA"}, {"uri": "../out.bin"}, 3]})");
+    Shot shot = make_shot(R"({"meshes": {"body": {"file": "body.gltf"}}})");
+    std::vector<std::string> names;
+    for (const auto& file : shot.list_files(1)) names.push_back(file.filename().string());
+    EXPECT_EQ(names, (std::vector<std::string>{"s.json", "body.gltf", "a b.bin"}));
+    write("body.gltf", "{");
+    EXPECT_EQ(shot.list_files(1).size(), 2u) << "reading it tells what is wrong";
+}
+
 TEST_F(ShotUpdates, have_hashes_of_all_that_a_shutter_sees) {
     write_waves(1, 4);
     const auto hash = [&](const std::string& shutter) { return make_wave_shot(shutter).load(2).hash; };

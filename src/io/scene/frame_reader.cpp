@@ -173,9 +173,13 @@ SceneUpdate FrameReader::update(double frame) {
     result.camera = state.reader.scene().camera;
     const uint64_t hash = hash_now(state);
     if (!is_same_scene) result.scene = state.reader.take_scene();
-    result.scene_hash = hash_shutter(state, hash, frame);
-    if (result.scene) result.scene->hash = result.scene_hash;
+    std::vector<std::string> warnings = std::move(assets_.warnings());
     assets_.warnings().clear();
+    result.scene_hash = hash_shutter(state, hash, frame);
+    if (result.scene) {
+        result.scene->hash = result.scene_hash;
+        for (std::string& warning : warnings) result.scene->warnings.push_back(std::move(warning));
+    }
     state_ = std::move(state);
     forget(result.camera, frame);
     return result;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "io/file_system.h"
+#include "io/mesh/gltf_uri.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/frame_reader.h"
 #include "io/scene/json_node.h"
@@ -12,6 +13,23 @@
 #include "relief/error.h"
 
 namespace relief {
+
+namespace {
+
+/// Adds the files that a mesh file reads beside itself. What is wrong with it, reading it tells.
+void add_buffers(const std::filesystem::path& file, std::vector<std::filesystem::path>& files) {
+    if (get_extension(file) != ".gltf") return;
+    const Json root = Json::parse(read_file_bytes(file), nullptr, false);
+    if (!root.is_object() || !root.contains("buffers") || !root["buffers"].is_array()) return;
+    for (const Json& buffer : root["buffers"])
+        if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string())
+            if (const auto uri = buffer["uri"].get<std::string>(); !is_data_uri(uri)) try {
+                    files.push_back(file.parent_path() / decode_path_uri(uri));
+                } catch (const Error&) {
+                }
+}
+
+} // namespace
 
 struct Shot::Implementation {
     std::filesystem::path file;
@@ -24,6 +42,12 @@ Shot::Shot(const std::filesystem::path& file, const MeshReaderSettings& reader) 
     implementation_.reset(new Implementation{file, FrameReader(parse_json(read_file_bytes(file), name), name,
                                                                AssetCache(file.parent_path()), reader)});
 }
+
+Shot::Shot(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
+           const MeshReaderSettings& reader)
+    : implementation_(
+          new Implementation{folder / "scene", FrameReader(parse_json(text, "scene"), "scene",
+                                                           AssetCache(folder, std::move(assets)), reader)}) {}
 
 Shot::~Shot() = default;
 Shot::Shot(Shot&&) noexcept = default;
@@ -43,7 +67,7 @@ std::vector<std::filesystem::path> Shot::list_files(double frame) const {
         if (has_tile_token(name))
             for (auto& [udim, tile] : find_tiles(file)) files.push_back(std::move(tile));
         else if (std::filesystem::exists(file, code))
-            files.push_back(file);
+            files.push_back(file), add_buffers(file, files);
         else
             throw Error(ErrorKind::bad_input,
                         {"there is no such file", file.string(),
