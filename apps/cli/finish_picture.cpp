@@ -33,6 +33,7 @@ void print_summary(const RenderResult& result, const RenderSettings& settings) {
     fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n",
                settings.image.width, settings.image.height, result.is_complete ? "" : "up to ",
                settings.image.spp, rays, s.render_s, s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
+    fmt::print(stderr, "read in {:.3f} s, prepared in {:.3f} s\n", s.load_s, s.prepare_s);
     fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
 }
@@ -103,13 +104,13 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     return exit_code != kExitDone ? exit_code : denoised;
 }
 
-int show_next(const RenderOptions& options, const RenderSettings& settings, Session& session,
+int show_next(const RenderOptions& options, const RenderSettings& settings, const RenderPicture& render,
               const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings,
               const std::string& step) {
     RenderResult result;
     {
         RenderWatcher watcher(options, printed_warnings, step);
-        result = session.render(&watcher);
+        result = render(&watcher);
         if (watcher.is_refused()) return kExitWarnings;
     }
     return finish_picture(options, settings, output, waiting, result, printed_warnings);

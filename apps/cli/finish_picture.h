@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -28,9 +29,11 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const PendingTimes& waiting, RenderResult& result,
                    size_t printed_warnings);
 
-/// Renders and finishes the next picture of a session; `printed_warnings` counts on. `step`: which of several
-/// it is, for its progress.
-int show_next(const RenderOptions& options, const RenderSettings& settings, Session& session,
+using RenderPicture = std::function<RenderResult(RenderObserver* observer)>;
+
+/// Renders and finishes one of several pictures; `printed_warnings` counts on. `step`: which of them it is,
+/// for its progress.
+int show_next(const RenderOptions& options, const RenderSettings& settings, const RenderPicture& render,
               const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings,
               const std::string& step = {});
 

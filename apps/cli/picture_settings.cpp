@@ -22,8 +22,7 @@ AimOptions choose_aim(const RenderOptions& options, const ImageSettings& image) 
 
 } // namespace
 
-RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
-    add_assumption_warnings(scene);
+RenderSettings check_picture(const RenderOptions& options, Scene& scene) {
     if (options.tile && get_lower_extension(options.output) == ".png")
         scene.warnings.emplace_back("a tile as a PNG cannot be merged: name an .exr");
     const std::vector<std::string> files = list_files(scene);
@@ -33,6 +32,12 @@ RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
     RenderSettings settings = make_settings(options, scene.picture);
     check_display(options.aim.display, options.output);
     apply_background(options.aim, options.output, settings.image);
+    return settings;
+}
+
+RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
+    add_assumption_warnings(scene);
+    const RenderSettings settings = check_picture(options, scene);
     aim_scene(scene, choose_aim(options, settings.image),
               float(settings.image.width) / float(settings.image.height));
     return settings;

@@ -24,7 +24,10 @@ template <class Read> auto with_scene_hint(const RenderOptions& options, const R
     }
 }
 
-/// Checks what the picture would replace, and aims the scene; the settings of its picture.
+/// Checks what the picture would replace; its settings.
+RenderSettings check_picture(const RenderOptions& options, Scene& scene);
+
+/// The same of the first picture of a scene, which is aimed.
 RenderSettings prepare_picture(const RenderOptions& options, Scene& scene);
 
 } // namespace relief::cli

@@ -26,6 +26,8 @@
 #include "relief/io.h"
 #include "relief/render.h"
 #include "relief/shot.h"
+#include "render_frames.h"
+#include "render_motion.h"
 #include "render_options.h"
 #include "render_series.h"
 #include "render_warnings.h"
@@ -57,15 +59,24 @@ void tell_of_earlier_samples(const RenderResult& result, const ImageSettings& im
                    most, most);
 }
 
+/// The scene file of a scene that may move, and the frame that it was loaded at; null: a still one.
+struct Source {
+    Shot* shot = nullptr;
+    int frame = 1;
+};
+
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
-                   const std::filesystem::path& output, const PendingTimes& waiting) {
+                   const Source& source, const PendingTimes& waiting) {
     catch_interrupts();
+    const std::filesystem::path& output = options.output;
     RenderResult result;
     size_t printed_warnings = 0;
     FilmKeeper keeper(options.checkpoint, output);
     {
         RenderWatcher watcher(options, printed_warnings); // its end prints the last line
-        result = render(std::move(scene), settings, &watcher, keeper.checkpoints());
+        result = source.shot ? render_shot(*source.shot, source.frame, std::move(scene), settings, &watcher,
+                                           keeper.checkpoints())
+                             : render(std::move(scene), settings, &watcher, keeper.checkpoints());
         if (watcher.is_refused()) return kExitWarnings;
     }
     if (!options.checkpoint.resumed.empty() && result.is_complete)
@@ -77,39 +88,45 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
 /// The scene as it is rendered, for --save-scene.
 void save_aimed_scene(const RenderOptions& options, const RenderSettings& settings, Scene scene) {
     const ImageSettings& image = settings.image;
-    scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed};
+    scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed, scene.picture.fps};
     save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene,
                     list_picture_options(options.aim));
     fmt::print("wrote {}\n", options.aim.saved_scene.string());
 }
 
-int render_scene(const RenderOptions& options, Scene scene, double start) {
+int render_scene(const RenderOptions& options, Scene scene, const Source& source, double start) {
     const double load_s = get_seconds() - start;
     const RenderSettings settings = prepare_picture(options, scene);
     if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
     const PendingTimes waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
     if (options.aim.turntable > 0) return render_turns(options, settings, std::move(scene), waiting);
-    if (!options.pixel) return render_picture(options, settings, std::move(scene), options.output, waiting);
+    if (!options.pixel) return render_picture(options, settings, std::move(scene), source, waiting);
     fmt::print("{}", explain_pixel(scene, settings, options.pixel->first, options.pixel->second).text);
     if (!options.progress.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }
 
-/// A picture of one frame, or of the file as it is where there is none. The shot is let go before it is
-/// rendered: it holds the text of the scene, and textures that a render would free.
+/// A picture of one frame, or of the file as it is where there is none. The shot is let go before a still one
+/// is rendered: it holds the text of the scene, and textures that a render would free.
 int render_frame(const RenderOptions& options, std::optional<Shot>& shot, std::optional<int> frame,
                  double start) {
     RenderOptions one = options;
     if (frame && !options.pixel && options.checkpoint.resumed.empty())
         one.output = name_frame(options.output, *frame);
     Scene scene = with_scene_hint(options, [&] { return shot->load(frame.value_or(1)); });
-    shot.reset();
-    return render_scene(one, std::move(scene), start);
+    const bool is_still = options.pixel || !options.edits.empty() || options.aim.turntable > 0 ||
+                          !is_moving(*shot, scene.camera);
+    if (is_still) {
+        shot.reset();
+        return render_scene(one, std::move(scene), {}, start);
+    }
+    check_motion(options);
+    return render_scene(one, std::move(scene), {&*shot, frame.value_or(1)}, start);
 }
 
 /// One picture, or those of all frames of the scene file or the command line.
-int render_shot(const RenderOptions& options, double start) {
+int render_file(const RenderOptions& options, double start) {
     refuse_picture(options);
     std::optional<Shot> shot;
     with_scene_hint(options, [&] { shot.emplace(options.input, make_mesh_reader()); });
@@ -122,16 +139,18 @@ int render_shot(const RenderOptions& options, double start) {
     check_series(options);
     const auto load = [&](int frame) {
         Scene scene = with_scene_hint(options, [&] { return shot->load(frame); });
+        if (is_moving(*shot, scene.camera)) check_motion(options);
         const RenderSettings settings = prepare_picture(options, scene);
         return std::pair(std::move(scene), settings);
     };
-    return render_frames(options, *shot, frames, load, {start, 0});
+    const auto check = [&](Scene& scene) { return check_picture(options, scene); };
+    return render_frames(options, {*shot, load, check}, frames, {start, 0});
 }
 
 int render_input(const RenderOptions& options, double start) {
     catch_interrupts();
-    if (!is_mesh_file(options.input)) return render_shot(options, start);
-    return render_scene(options, load_mesh_scene(options.input, options.mesh), start);
+    if (!is_mesh_file(options.input)) return render_file(options, start);
+    return render_scene(options, load_mesh_scene(options.input, options.mesh), {}, start);
 }
 
 } // namespace

@@ -161,6 +161,20 @@ void change_attempt(const FarmJob& job, const Attempt& before, const Attempt& af
     if (code) fail("cannot be renamed: " + code.message(), to);
 }
 
+void declare_dead(const FarmJob& job, const Attempt& attempt) {
+    Attempt lost = attempt;
+    lost.state = AttemptState::lost;
+    std::error_code code;
+    fs::rename(get_attempt_file(job, attempt), get_attempt_file(job, lost), code);
+    if (code == std::errc::no_such_file_or_directory) return;
+    if (code) fail("cannot be renamed: " + code.message(), get_attempt_file(job, lost));
+    const fs::path film = get_attempt_film_file(job, attempt);
+    // A hard link fails where there are samples already, so that none are lost.
+    if (!fs::exists(get_film_file(job, attempt.task), code))
+        fs::create_hard_link(film, get_partial_film_file(job, attempt.task), code);
+    fs::remove(film, code);
+}
+
 std::optional<double> measure_silence(const FarmJob& job, const Attempt& attempt, double now_s) {
     struct stat status {};
     if (::stat(get_attempt_file(job, attempt).c_str(), &status) != 0) return std::nullopt;
@@ -188,6 +202,10 @@ fs::path get_film_file(const FarmJob& job, uint32_t task) {
 
 fs::path get_partial_film_file(const FarmJob& job, uint32_t task) {
     return get_folder(job, "parts", task) / fmt::format("{}.partial.film", task);
+}
+
+fs::path get_attempt_film_file(const FarmJob& job, const Attempt& attempt) {
+    return get_folder(job, "parts", attempt.task) / fmt::format("{}.{}.film", attempt.task, attempt.who);
 }
 
 fs::path get_preview_file(const FarmJob& job, uint32_t task) {

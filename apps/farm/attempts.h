@@ -53,6 +53,10 @@ std::vector<Attempt> list_attempts(const FarmJob& job, uint32_t task);
 /// Error{failed}.
 void change_attempt(const FarmJob& job, const Attempt& before, const Attempt& after);
 
+/// Notes of another process's attempt that it is dead; keeps the samples that it has written, where the task
+/// has none from an earlier one. Nothing happens to one that has ended meanwhile.
+void declare_dead(const FarmJob& job, const Attempt& attempt);
+
 /// The last sign of life of a running attempt, seconds ago by the clock of the storage; nullopt: it ended.
 std::optional<double> measure_silence(const FarmJob& job, const Attempt& attempt, double now_s);
 
@@ -65,6 +69,8 @@ bool is_stale(const FarmJob& job, const Attempt& attempt, double silence_s);
 /// Files of a task. The film is that of the whole task, the partial one of some of its samples.
 std::filesystem::path get_film_file(const FarmJob& job, uint32_t task);
 std::filesystem::path get_partial_film_file(const FarmJob& job, uint32_t task);
+/// What a running attempt writes.
+std::filesystem::path get_attempt_film_file(const FarmJob& job, const Attempt& attempt);
 std::filesystem::path get_preview_file(const FarmJob& job, uint32_t task);
 std::filesystem::path get_log_file(const FarmJob& job, uint32_t task);
 

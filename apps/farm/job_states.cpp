@@ -124,11 +124,7 @@ std::vector<uint32_t> list_tasks(const JobStates& states, std::initializer_list<
 }
 
 void declare_lost(const FarmJob& job, const std::vector<Attempt>& attempts) {
-    for (const Attempt& attempt : attempts) {
-        Attempt lost = attempt;
-        lost.state = AttemptState::lost;
-        change_attempt(job, attempt, lost);
-    }
+    for (const Attempt& attempt : attempts) declare_dead(job, attempt);
 }
 
 } // namespace relief::cli

@@ -105,6 +105,7 @@ class LocalFarm {
         int status = 0;
         const pid_t ended = ::waitpid(worker.process, &status, WNOHANG);
         if (ended == 0 || (ended < 0 && errno == EINTR)) return false;
+        if (ended < 0) return note_killed(worker, kExitSignalBase), true; // nobody knows how it ended
         const int code = WIFEXITED(status) ? WEXITSTATUS(status) : kExitSignalBase + WTERMSIG(status);
         if (code == kExitDone)
             ++done_;

@@ -41,10 +41,13 @@ int merge_and_report(const FarmJob& job, const MergeOptions& options) {
     if (get_interrupt() != 0) return report.exit_code;
     if (report.missing.empty()) return report.exit_code;
     print_missing(job, report);
-    throw Error(ErrorKind::bad_input,
-                {fmt::format("{} of {} frames are not whole", report.missing.size(), job.frames.size()),
-                 job.folder.string(),
-                 fmt::format("relief farm retry {} puts up again what failed", job.folder.string())});
+    throw Error(
+        ErrorKind::bad_input,
+        {fmt::format("{} of {} frames are not whole", report.missing.size(), job.frames.size()),
+         job.folder.string(),
+         fmt::format("relief farm submit {0} renders what is missing; relief farm retry {0} puts up again "
+                     "what failed",
+                     job.folder.string())});
 }
 
 Command add_farm_merge(CLI::App& verb) {

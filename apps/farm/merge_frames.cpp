@@ -15,6 +15,7 @@
 #include "cli/finish_picture.h"
 #include "cli/interrupt.h"
 #include "cli/picture_settings.h"
+#include "cli/render_motion.h"
 #include "cli/render_warnings.h"
 #include "common/command_line.h"
 #include "common/denoiser_search.h"
@@ -99,7 +100,7 @@ class FrameMerger {
         RenderResult result;
         try {
             RenderWatcher watcher(options_, printed_warnings, fmt::format("frame {}", frame));
-            result = render(std::move(scene), settings, &watcher, checkpoints);
+            result = render_shot(shot_, frame, std::move(scene), settings, &watcher, checkpoints);
             if (watcher.is_refused()) return kExitWarnings;
         } catch (const Error& error) {
             if (!note_damage(error, frame_index, checkpoints.parts, report)) throw;

@@ -12,6 +12,7 @@
 
 #include "base/machine.h"
 #include "cli/picture_settings.h"
+#include "cli/render_motion.h"
 #include "common/inputs.h"
 #include "common/mesh_reader.h"
 #include "common/progress.h"
@@ -123,6 +124,7 @@ JobEstimate estimate_cost(const Scene& scene, const RenderSettings& settings, co
 /// The first frame says how large all are.
 void measure_frame(const RenderOptions& options, Shot& shot, FarmJob& job, WorkProgress& progress) {
     Scene scene = with_scene_hint(options, [&] { return shot.load(job.frames.front()); });
+    if (is_moving(shot, scene.camera)) check_motion(options);
     const RenderSettings settings = prepare_picture(options, scene);
     const ImageSettings& image = settings.image;
     job.width = image.width, job.height = image.height, job.spp = image.spp;

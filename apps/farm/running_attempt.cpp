@@ -25,10 +25,7 @@ void forget_dead_attempts(const FarmJob& job, uint32_t task) {
     for (const Attempt& attempt : list_attempts(job, task)) {
         if (attempt.state != AttemptState::running) continue;
         const std::optional<double> silence_s = measure_silence(job, attempt, now_s);
-        if (!silence_s || !is_stale(job, attempt, *silence_s)) continue;
-        Attempt lost = attempt;
-        lost.state = AttemptState::lost;
-        change_attempt(job, attempt, lost);
+        if (silence_s && is_stale(job, attempt, *silence_s)) declare_dead(job, attempt);
     }
 }
 
@@ -58,10 +55,7 @@ RunningAttempt::~RunningAttempt() {
     }
 }
 
-fs::path RunningAttempt::film_file() const {
-    return get_film_file(job_, attempt_.task).parent_path() /
-           fmt::format("{}.{}.film", attempt_.task, attempt_.who);
-}
+fs::path RunningAttempt::film_file() const { return get_attempt_film_file(job_, attempt_); }
 
 void RunningAttempt::beat() {
     const fs::path file = get_attempt_file(job_, attempt_);
@@ -99,7 +93,9 @@ void RunningAttempt::end_done(uint64_t rays) {
 
 void RunningAttempt::end_partial() {
     std::error_code code;
-    if (fs::exists(film_file(), code))
+    if (fs::exists(get_film_file(job_, attempt_.task), code)) // another attempt has all samples
+        fs::remove(film_file(), code);
+    else if (fs::exists(film_file(), code))
         rename_job_file(film_file(), get_partial_film_file(job_, attempt_.task));
     Attempt after = attempt_;
     after.state = AttemptState::partial;

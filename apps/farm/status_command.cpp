@@ -37,7 +37,7 @@ void print_status(const FarmJob& job, const StatusReport& report, const StatusOp
     std::fflush(stdout);
 }
 
-/// Half-second steps, so that an interrupt ends it soon.
+/// In short steps, so that an interrupt ends it soon.
 void wait_a_while() {
     for (int step = 0; step < 8 && get_interrupt() == 0; ++step)
         std::this_thread::sleep_for(std::chrono::milliseconds(250));

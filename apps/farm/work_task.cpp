@@ -18,6 +18,7 @@
 #include "cli/finish_picture.h"
 #include "cli/interrupt.h"
 #include "cli/picture_settings.h"
+#include "cli/render_motion.h"
 #include "cli/render_warnings.h"
 #include "common/command_line.h"
 #include "common/exit_codes.h"
@@ -80,7 +81,7 @@ RenderResult render_task(const FarmJob& job, const FarmTask& task, const RenderO
     LoadedTask loaded = load_task(task, options, shot);
     checkpoints.parts = find_earlier_samples(job, task, loaded.settings);
     try {
-        return render(std::move(loaded.scene), loaded.settings, &watcher, checkpoints);
+        return render_shot(shot, task.frame, std::move(loaded.scene), loaded.settings, &watcher, checkpoints);
     } catch (const Error& error) {
         if (checkpoints.parts.empty() || error.where() != checkpoints.parts.front().name) throw;
         fmt::print(stderr, "relief: warning: the samples of an earlier attempt are left out: {}\n",
@@ -89,7 +90,7 @@ RenderResult render_task(const FarmJob& job, const FarmTask& task, const RenderO
         fs::remove(checkpoints.parts.front().name, ignored);
         checkpoints.parts.clear();
         loaded = load_task(task, options, shot);
-        return render(std::move(loaded.scene), loaded.settings, &watcher, checkpoints);
+        return render_shot(shot, task.frame, std::move(loaded.scene), loaded.settings, &watcher, checkpoints);
     }
 }
 

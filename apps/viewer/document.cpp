@@ -229,7 +229,7 @@ std::vector<std::filesystem::path> Document::save(const std::filesystem::path& f
     }
     Scene scene = scene_;
     if (input_.frame) changes_.frame = *input_.frame;
-    scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed};
+    scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed, scene.picture.fps};
     save_scene_copy(scene, input_.file, input_.mesh, file, {}, changes_);
     written.push_back(file);
     has_changes_ = false, is_saved_ = true;

@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -55,6 +57,35 @@ TEST_F(FarmStates, a_name_says_all_of_an_attempt) {
     for (const char* name : {"", "1", "1.a", "1.a.gone", "x.a.done.1.2", "1.a.done.1", "1.a.failed",
                              "1.a.done.1.2.3", "-1.a.running", "clock-vm-1-2"})
         EXPECT_FALSE(parse_attempt_name(name)) << name;
+}
+
+TEST_F(FarmStates, the_samples_of_a_dead_attempt_are_kept_unless_there_are_others) {
+    Attempt attempt;
+    attempt.task = 7, attempt.who = "node-1-2";
+    add(7, attempt.who, AttemptState::running);
+    const auto write_film = [&](const fs::path& file, const char* content) {
+        fs::create_directories(file.parent_path());
+        std::ofstream(file) << content;
+    };
+    const auto read_partial = [&] {
+        std::ifstream file(get_partial_film_file(job_, 7));
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    write_film(get_attempt_film_file(job_, attempt), "first");
+    declare_dead(job_, attempt);
+    EXPECT_EQ(read_partial(), "first");
+    EXPECT_FALSE(fs::exists(get_attempt_film_file(job_, attempt)));
+    ASSERT_EQ(list_attempts(job_, 7).size(), 1u);
+    EXPECT_EQ(list_attempts(job_, 7)[0].state, AttemptState::lost);
+    attempt.who = "node-3-4";
+    add(7, attempt.who, AttemptState::running);
+    write_film(get_attempt_film_file(job_, attempt), "second");
+    declare_dead(job_, attempt);
+    EXPECT_EQ(read_partial(), "first");
+    EXPECT_FALSE(fs::exists(get_attempt_film_file(job_, attempt)));
+    attempt.who = "node-5-6"; // it has ended meanwhile
+    declare_dead(job_, attempt);
+    EXPECT_EQ(list_attempts(job_, 7).size(), 2u);
 }
 
 TEST_F(FarmStates, tasks_cut_frames_into_bands_and_ranges) {

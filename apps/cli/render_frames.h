@@ -1,0 +1,26 @@
+// The frames of a shot: one picture each, with motion blur where the shutter of the camera is open.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "finish_picture.h"
+#include "relief/scene.h"
+#include "relief/shot.h"
+
+namespace relief::cli {
+
+/// What is done with the scene of each frame before it is rendered.
+struct FrameSource {
+    Shot& shot;
+    std::function<std::pair<Scene, RenderSettings>(int frame)> load;
+    /// Checks a scene that differs from the one before, and returns the settings of its picture.
+    std::function<RenderSettings(Scene& scene)> check;
+};
+
+/// One picture a frame. What does not differ from the frame before stays prepared.
+int render_frames(const RenderOptions& options, const FrameSource& source, const std::vector<int>& frames,
+                  PendingTimes waiting);
+
+} // namespace relief::cli
