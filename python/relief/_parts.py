@@ -20,9 +20,10 @@ class Part(dict[str, Any]):
 
 
 class Camera(Part):
-    """Camera(from_=(x, y, z), to=(x, y, z), up=(0, 1, 0), fov_degrees=35, aperture_radius=0, focus_distance=...).
+    """Camera(from_=(x, y, z), to=(x, y, z), up=(0, 1, 0), fov_degrees=35, aperture_radius=0, focus_distance=..., shutter=(0, 0)).
 
-    fov_degrees: vertical, in degrees. aperture_radius, focus_distance: scene units; a radius of 0 is a pinhole."""
+    fov_degrees: vertical, in degrees. aperture_radius, focus_distance: scene units; a radius of 0 is a pinhole. shutter: open
+    and closed, frames from that of the picture; values with keys are blurred by their motion between."""
 
 
 class Light(Part):

@@ -92,7 +92,8 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
     level: "auto", or 2^level cells a side of each patch. pixel_error: size of cells aimed at, pixels.
     mode: "direct" or "tessellated". denoise: True, or the library or folder of Open Image Denoise 2. first_sample: of a
     range of samples. cache_mb: cap of the cache of patch trees. frame: of values with keys and of files with `####`, may
-    lie between two; the first of the scene's render.frames unless given. more: lod, bounce_levels, leaf, isa, structure, traversal,
+    lie between two; the first of the scene's render.frames unless given; with motion blur where the camera has a "shutter".
+    more: lod, bounce_levels, leaf, isa, structure, traversal,
     method, bottom, pipeline_cache, as the options of `relief render`.
 
     progress: True for a bar, or a function of a Progress. on_picture: a function of the Picture so far, called as soon as
@@ -121,7 +122,7 @@ class Session:
     """A scene that stays prepared while its displacement maps are edited and its camera moves: pictures after the first cost
     what changed.
 
-    frame: of values with keys. settings: the other keywords of render() but for denoise. Not for several threads at once."""
+    frame: of values with keys, at an instant. settings: the other keywords of render() but for denoise. Not for several threads at once."""
 
     def __init__(self, scene: Union[Scene, Path], frame: Optional[float] = None, **settings: Any) -> None:
         keywords = choose_cache({key: value for key, value in settings.items() if value is not None})

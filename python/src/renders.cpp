@@ -58,6 +58,14 @@ std::shared_ptr<const Denoiser> load_denoiser(const std::vector<std::string>& li
     return std::make_shared<const Denoiser>(denoiser);
 }
 
+/// With motion blur where the scene moves. The scene is used up.
+RenderResult render_parsed(ParsedScene& parsed, const RenderSettings& settings, RenderObserver& observer) {
+    if (!parsed.shot) return render(std::move(parsed.scene), settings, &observer);
+    Session session(std::move(parsed.scene), settings, SessionUse::scenes);
+    const auto update = [&parsed](double frame) { return parsed.shot->update(frame); };
+    return session.render_moving(parsed.frame, update, &observer);
+}
+
 /// The scene is used up.
 nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, const RenderCallbacks& callbacks,
                         bool is_denoised, const std::vector<std::string>& denoisers) {
@@ -65,7 +73,7 @@ nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, const Ren
     const GateVisit visit;
     const auto denoiser = load_denoiser(denoisers, is_denoised, settings);
     const auto work = [&parsed, &settings, denoiser](RenderObserver& observer) {
-        RenderResult result = render(std::move(parsed.scene), settings, &observer);
+        RenderResult result = render_parsed(parsed, settings, observer);
         if (!denoiser || result.whole_samples == 0) return result;
         const auto start = std::chrono::steady_clock::now();
         try {

@@ -81,6 +81,14 @@ nb::dict describe_camera(const Camera& camera) {
     node["fov_degrees"] = camera.fov_degrees;
     node["aperture_radius"] = camera.aperture_radius;
     node["focus_distance"] = camera.focus_distance;
+    const auto add_pair = [&](const char* key, float first, float second) {
+        if (first == 0 && second == 0) return;
+        nb::list pair;
+        pair.append(first), pair.append(second);
+        node[key] = pair;
+    };
+    add_pair("shift", camera.shift.x, camera.shift.y);
+    add_pair("shutter", camera.shutter_open, camera.shutter_close);
     return node;
 }
 

@@ -30,6 +30,16 @@ namespace {
 
 using ScenePointer = std::unique_ptr<ParsedScene>;
 
+/// The shot is let go unless motion blur needs it.
+ScenePointer load_shot(std::unique_ptr<Shot> shot, std::optional<double> frame) {
+    auto parsed = std::make_unique<ParsedScene>();
+    parsed->frame = frame.value_or(shot->frames().empty() ? 1 : shot->frames().front());
+    parsed->scene = shot->load(parsed->frame);
+    const Camera& camera = parsed->scene.camera;
+    if (shot->is_animated() && camera.shutter_open < camera.shutter_close) parsed->shot = std::move(shot);
+    return parsed;
+}
+
 ScenePointer parse(const std::string& text, const std::string& folder, const nb::dict& meshes,
                    const nb::dict& textures, std::optional<double> frame) {
     SceneAssets assets;
@@ -41,14 +51,13 @@ ScenePointer parse(const std::string& text, const std::string& folder, const nb:
     }
     const GateVisit visit;
     const nb::gil_scoped_release release;
-    return std::make_unique<ParsedScene>(
-        ParsedScene{parse_scene_text(text, folder, std::move(assets), frame)});
+    return load_shot(std::make_unique<Shot>(text, folder, std::move(assets)), frame);
 }
 
 ScenePointer load(const std::string& file, std::optional<double> frame) {
     const GateVisit visit;
     const nb::gil_scoped_release release;
-    return std::make_unique<ParsedScene>(ParsedScene{frame ? Shot(file).load(*frame) : load_scene(file)});
+    return load_shot(std::make_unique<Shot>(file), frame);
 }
 
 nb::dict describe_picture(const ParsedScene& parsed) {

@@ -75,6 +75,17 @@ class RenderTest(unittest.TestCase):
         self.assertEqual(relief.parse_frames("1-7x3,12"), [1, 4, 7, 12])
         self.assertEqual(relief.name_frame("wave.####.exr", 12), "wave.0012.exr")
 
+    def test_motion_blur_is_the_mean_of_still_pictures(self):
+        scene = scenes.make_scene()
+        scene.objects[0]["transform"] = {"translate": {"keys": [[1, [0, 0, 0]], [3, [1, 0, 0]]]}}
+        scene.camera["shutter"] = (-0.5, 0.5)
+        blur = relief.render(scene, frame=2, spp=4).array
+        scene.camera["shutter"] = (0, 0)
+        times = [2 - 0.5 + (0.5 + k * 0x9E3779B9 / 2**32) % 1 for k in range(4)]
+        stills = [relief.render(scene, frame=time, spp=1, first_sample=k).array for k, time in enumerate(times)]
+        np.testing.assert_array_equal(blur, np.mean(np.asarray(stills, dtype=np.float64), axis=0).astype(np.float32))
+        self.assertFalse(np.array_equal(blur, relief.render(scene, frame=2, spp=4).array))
+
     def test_settings_that_are_wrong_are_named(self):
         for words, keys in (("'speed'.*'spp'|there is no keyword 'sppp'.*spp", dict(sppp=3)), ("spp.*whole number from 1", dict(spp=0)),
                             ("spp: 1.5 is not", dict(spp=1.5)), ("size: 5 is not two", dict(size=5)), ("spp: True is not", dict(spp=True)),
