@@ -7,20 +7,14 @@
 
 #include "relief/error.h"
 #include "relief/render.h"
-#include "support/bodies.h"
-#include "surface/test_scenes.h"
+#include "support/session_scenes.h"
 
 namespace relief {
 
 namespace {
 
 Scene make_torus_scene() {
-    Scene scene = test::make_body_scene(
-        test::make_torus(8, 16),
-        test::make_displacement(test::make_random_map(96, 64, 0.05f, 3), DisplacementSpace::tangent));
-    scene.displacements[0].wrap = WrapMode::repeat;
-    scene.camera.from = {2.4f, 1.9f, 1.2f}, scene.camera.to = {0, 0, 0};
-    scene.environment = Environment{};
+    Scene scene = test::make_rough_torus();
     Light sun;
     sun.type = LightType::sun, sun.direction = {-1, -2, -1};
     scene.lights.push_back(sun);

@@ -8,24 +8,15 @@
 
 #include "relief/error.h"
 #include "relief/render.h"
-#include "support/bodies.h"
-#include "surface/test_scenes.h"
+#include "support/session_scenes.h"
 
 namespace relief {
 
 namespace {
 
-constexpr int kWidth = 40, kHeight = 30;
+using test::make_rough_torus;
 
-Scene make_lit_torus() {
-    Scene scene = test::make_body_scene(
-        test::make_torus(8, 16),
-        test::make_displacement(test::make_random_map(96, 64, 0.05f, 3), DisplacementSpace::tangent));
-    scene.displacements[0].wrap = WrapMode::repeat;
-    scene.camera.from = {2.4f, 1.9f, 1.2f}, scene.camera.to = {0, 0, 0};
-    scene.environment = Environment{};
-    return scene;
-}
+constexpr int kWidth = 40, kHeight = 30;
 
 RenderSettings make_part_settings(int first, int last, const Window& window) {
     RenderSettings settings;
@@ -47,7 +38,7 @@ std::string render_part(int first, int last, const Window& window) {
         write(stream);
         bytes = stream.str();
     };
-    render(make_lit_torus(), make_part_settings(first, last, window), nullptr, checkpoints);
+    render(make_rough_torus(), make_part_settings(first, last, window), nullptr, checkpoints);
     return bytes;
 }
 
@@ -69,7 +60,7 @@ std::vector<FilmPart> render_parts() {
 RenderResult join(std::vector<FilmPart> parts, int spp) {
     Checkpoints checkpoints;
     checkpoints.parts = std::move(parts);
-    return render(make_lit_torus(), make_part_settings(0, spp, {}), nullptr, checkpoints);
+    return render(make_rough_torus(), make_part_settings(0, spp, {}), nullptr, checkpoints);
 }
 
 std::string find_refusal(std::vector<FilmPart> parts) {
@@ -85,7 +76,7 @@ std::string find_refusal(std::vector<FilmPart> parts) {
 } // namespace
 
 TEST(FilmParts, join_to_the_bits_of_one_render_without_a_ray) {
-    const RenderResult whole = render(make_lit_torus(), make_part_settings(0, 12, {}));
+    const RenderResult whole = render(make_rough_torus(), make_part_settings(0, 12, {}));
     const RenderResult joined = join(render_parts(), 12);
     EXPECT_EQ(joined.image.pixels, whole.image.pixels);
     EXPECT_EQ(joined.image.metadata, whole.image.metadata);
@@ -94,7 +85,7 @@ TEST(FilmParts, join_to_the_bits_of_one_render_without_a_ray) {
 }
 
 TEST(FilmParts, that_leave_samples_out_are_rendered_to_the_end) {
-    const RenderResult whole = render(make_lit_torus(), make_part_settings(0, 16, {}));
+    const RenderResult whole = render(make_rough_torus(), make_part_settings(0, 16, {}));
     const RenderResult joined = join(render_parts(), 16);
     EXPECT_EQ(joined.image.pixels, whole.image.pixels);
     EXPECT_EQ(joined.statistics.camera_rays, uint64_t(kWidth) * kHeight * 4);

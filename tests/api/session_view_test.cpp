@@ -127,6 +127,26 @@ TEST(SessionView, takes_another_size_and_edits_after_it) {
     EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
 }
 
+/// Lines that levels are chosen by are measured once for all views, and again where the map has changed.
+TEST(SessionView, chooses_levels_by_the_map_as_it_is) {
+    Scene scene = make_rough_torus();
+    const RenderSettings settings = make_session_settings();
+    Session session(scene, settings);
+    const auto turn = [&] {
+        scene.camera.from = scene.camera.from + Vec3f{0.3f, 0.1f, -0.2f};
+        session.change_view(scene.camera, settings.image);
+        return session.render().image.pixels == render(scene, settings).image.pixels;
+    };
+    EXPECT_TRUE(turn());
+    auto map = std::make_shared<Texture>(*scene.displacements[0].tiles[0].texture);
+    for (float& value : map->floats) value *= 6;
+    MapEdit edit;
+    edit.displacement = "map", edit.texels = *map;
+    session.edit(edit);
+    scene.displacements[0].tiles[0].texture = map;
+    EXPECT_TRUE(turn());
+}
+
 TEST(SessionView, refuses_what_a_render_refuses_and_stays_as_it_was) {
     const Scene scene = make_rough_torus();
     RenderSettings settings = make_session_settings();

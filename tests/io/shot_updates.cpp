@@ -293,6 +293,20 @@ TEST_F(ShotUpdates, list_files_that_an_open_shutter_reads) {
     EXPECT_HAS(message_of([&] { list("[-0.25, 0.25]", 3); }), "wave.0002.exr");
 }
 
+TEST_F(ShotUpdates, pass_on_what_later_files_are_warned_of) {
+    for (int k = 1; k <= 2; ++k)
+        write_pixels<float>("sky.0" + std::to_string(k) + ".exr", 1, 1, 3, OIIO::TypeDesc::FLOAT,
+                            {k == 1 ? 1.0f : -1.0f, 1, 1});
+    Shot shot =
+        make_shot(R"({"environment": {"file": "sky.##.exr"}, "meshes": {"plane": {"file": "plane.obj"}},
+                              "objects": [{"mesh": "plane"}]})");
+    EXPECT_TRUE(shot.load(1).warnings.empty());
+    const std::vector<std::string> warnings = shot.update(2).scene->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS(warnings[0], "negative radiance counts as 0");
+    EXPECT_TRUE(shot.update(1).scene->warnings.empty());
+}
+
 TEST_F(ShotUpdates, list_the_buffers_of_gltf_files) {
     write("body.gltf",
           R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AAAA"}, {"uri": "../out.bin"}, 3]})");
