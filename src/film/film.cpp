@@ -310,6 +310,15 @@ void Film::add_sample(int x, int y, const FilmSample& sample) {
     add(x, y, sums, sample.alpha);
 }
 
+bool Film::needs_first_hits() const {
+    const auto is_of_light = [](const Layer& layer) {
+        const Source source = kLayerKinds[layer.kind].source;
+        return is_of_paths(source) || source == Source::samples || source == Source::variance ||
+               source == Source::cost || source == Source::motion;
+    };
+    return !depths_.empty() || !std::ranges::all_of(layers_, is_of_light);
+}
+
 void Film::add_sums(int x, int y, const FilmSums& added) {
     add(x, y, added, float(added.hit_count + added.light_count));
 }

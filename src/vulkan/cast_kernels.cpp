@@ -17,14 +17,22 @@ constexpr uint32_t kGroup = 64; ///< invocations of kernels without barriers
 /// lavapipe silently ends loops after 65535 iterations of an invocation; 32 rays of 1365 nodes stay below.
 constexpr uint32_t kSafePairsPerLane = 32;
 
-/// Lanes per tree in each bin; few on software devices, which save a group's state at each barrier.
-std::array<uint32_t, scalar::kBuildBinCount> choose_lanes(bool is_cpu) {
-    if (is_cpu) return {4, 8, 8};
-    return {4, 16, 64};
+/// How trees of a bin are built.
+struct BuildShape {
+    uint32_t group; ///< invocations
+    uint32_t lanes; ///< of them, per tree
+};
+
+/// Few lanes on software devices, which save a group's state at each barrier. On others shared memory bounds
+/// the groups of large trees, so that each has many.
+std::array<BuildShape, scalar::kBuildBinCount> choose_shapes(bool is_cpu) {
+    if (is_cpu) return {{{8, 4}, {8, 8}, {8, 8}}};
+    return {{{64, 8}, {64, 64}, {128, 128}}};
 }
 
-/// Granularity of stack sizes, so that scenes of similar depth share a kernel. Size 1 means no stack.
-constexpr uint32_t kStackStep = 8;
+/// Granularity of stack sizes, so that scenes of similar depth share a kernel: from 320 bytes on, as RADV
+/// keeps arrays of up to 256 in registers. Size 1 means no stack.
+constexpr uint32_t kStackStep = 40;
 
 /// Maximum tree level of each bin.
 constexpr std::array<uint32_t, scalar::kBuildBinCount> kDeepest = {1, 3, scalar::kTreeLevels};
@@ -53,24 +61,23 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     // Measured: docs/decisions/bottom-form.md.
     is_fused = settings.experiment.bottom == BottomForm::fused;
     if (stack_size > 1) stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
-    scene_traversal =
-        make_walk(device, settings.experiment.method, scene.traversal_kernel(), {kGroup, stack_size});
-    find_jobs = Kernel(device, {"find_jobs", {kGroup}});
+    scene_traversal = make_walk(device, settings.experiment.method, scene.traversal_kernel(),
+                                scene.add_contents({kGroup, stack_size}, settings.surface.lod));
+    find_jobs = Kernel(device, {"find_jobs", scene.add_contents({kGroup}, settings.surface.lod)});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});
     commit_round = Kernel(device, {"commit_round", {kGroup}});
     finish_hits = Kernel(device, {"finish_hits", scene.add_filter({kGroup, is_box})});
 
-    const std::array<uint32_t, scalar::kBuildBinCount> lanes = choose_lanes(is_cpu);
-    const uint32_t build_group = is_cpu ? 8 : 64;
+    const std::array<BuildShape, scalar::kBuildBinCount> shapes = choose_shapes(is_cpu);
     arguments_push.group_size = kGroup;
     const bool is_coarser = config.may_see_coarser || settings.surface.lod == LodRule::ray;
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin) {
         if (!is_fused && has_trees(scene.tree_levels(), is_coarser, bin))
             bottom_build[bin].emplace(
-                device, KernelConfig{"bottom_build",
-                                     scene.add_filter({build_group, lanes[bin], kDeepest[bin], bin})});
-        arguments_push.builds_per_group[bin] = build_group / lanes[bin];
+                device, KernelConfig{"bottom_build", scene.add_filter({shapes[bin].group, shapes[bin].lanes,
+                                                                       kDeepest[bin], bin})});
+        arguments_push.builds_per_group[bin] = shapes[bin].group / shapes[bin].lanes;
     }
     if (!is_fused) {
         patch_traversal = make_walk(device, settings.experiment.method, {"patch_traversal", {}, {}},

@@ -78,6 +78,7 @@ DeviceScene::DeviceScene(const Device& device, const PreparedScene& scene, const
     else
         add_trees(scene, arrays);
     add_instances(scene, arrays);
+    add_tree_levels(scene);
     upload(device, arrays);
 }
 
@@ -92,7 +93,15 @@ uint32_t DeviceScene::texture_index(const Texture* texture) const {
 
 std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) const {
     set_constant(constants, scalar::kSmoothConstant, has_smooth_ ? 1 : 0);
+    set_constant(constants, scalar::kBicubicConstant, has_bicubic_ ? 1 : 0);
     set_constant(constants, scalar::kShadowCatchersConstant, has_catchers_ ? 1 : 0);
+    return constants;
+}
+
+std::vector<uint32_t> DeviceScene::add_contents(std::vector<uint32_t> constants, LodRule lod) const {
+    set_constant(constants, scalar::kPolygonsConstant, has_polygons_ ? 1 : 0);
+    set_constant(constants, scalar::kTilesConstant, has_tiles_ ? 1 : 0);
+    set_constant(constants, scalar::kRayLodConstant, lod == LodRule::ray ? 1 : 0);
     return constants;
 }
 
@@ -172,6 +181,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         scalar::SurfaceData data{};
         data.first_vertex = uint32_t(arrays.positions.size());
         for (uint32_t v = 0; v < surface.vertex_count(); ++v) arrays.positions.push_back(surface.position(v));
+        has_bicubic_ |= !surface.controls.empty();
         data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
         for (const InnerControls& controls : surface.controls)
             arrays.positions.insert(arrays.positions.end(), controls.begin(), controls.end());
@@ -202,6 +212,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         data.has_bilinear_uvs = surface.has_bilinear_uvs ? 1 : 0;
         data.map = surface.has_displacement ? uint32_t(tables_.maps.size()) : kNone;
         if (surface.has_displacement) add_map(surface);
+        has_polygons_ |= !surface.has_displacement;
         tables_.surfaces.push_back(data);
     }
     patch_count_ = uint32_t(arrays.quads.size());
@@ -240,11 +251,26 @@ void DeviceScene::add_walk(const SceneWalk& walk, Arrays& arrays) {
     node_count_ = arrays.nodes.size();
 }
 
-void DeviceScene::add_tree_levels(const Surface& surface, const LevelField& levels) {
-    const uint32_t count = levels.is_uniform() ? std::min(1u, surface.patch_count()) : surface.patch_count();
-    for (uint32_t patch = 0; patch < count; ++patch) {
-        const uint32_t level = scalar::packed_patch_level(levels.packed_at(patch));
-        tree_levels_ |= 1u << std::min(level, scalar::kTreeLevels);
+void DeviceScene::add_tree_levels(const PreparedScene& scene) {
+    constexpr uint8_t kNoTree = 0xff;
+    std::vector<uint8_t> finest(patch_count_, kNoTree); // over the instances of a patch
+    for (const relief::Instance& instance : scene.instances) {
+        const Surface& surface = scene.surfaces[instance.surface];
+        if (!surface.has_displacement) continue;
+        for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
+            const auto level = uint8_t(scalar::packed_patch_level(instance.levels->packed_at(patch)));
+            uint8_t& known = finest[first_patch(instance.surface) + patch];
+            if (known == kNoTree || known < level) known = level;
+            tree_levels_ |= 1u << std::min<uint32_t>(level, scalar::kTreeLevels);
+            has_tiles_ |= level > scalar::kTreeLevels;
+        }
+    }
+    constexpr uint64_t unit_bytes = scalar::kPoolUnitWords * sizeof(uint32_t);
+    for (const uint8_t level : finest) {
+        if (level == kNoTree) continue;
+        const uint32_t tree_level = std::min<uint32_t>(level, scalar::kTreeLevels);
+        tree_bytes_ += (uint64_t(scalar::count_tree_units(tree_level)) * unit_bytes)
+                       << 2 * (level - tree_level);
     }
 }
 
@@ -270,7 +296,6 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
         }
         if (instance.is_mirrored) data.levels |= scalar::kMirrored;
         if (instance.is_shadow_catcher) data.levels |= scalar::kShadowCatcher;
-        if (surface.has_displacement) add_tree_levels(surface, *instance.levels);
         tables_.instances.push_back(data);
     }
 }

@@ -31,6 +31,8 @@ class DeviceScene {
     uint32_t stack_size() const { return stack_size_; }
     /// Bit k: there are patches, or tiles of finer patches, of level k.
     uint32_t tree_levels() const { return tree_levels_; }
+    /// Of the trees of all patches at their levels; of a patch of a finer one, of all its tiles.
+    uint64_t tree_bytes() const { return tree_bytes_; }
     uint32_t node_count() const { return uint32_t(node_count_); }
     const Buffer& nodes() const { return nodes_; }
     /// Index into the table of textures; scalar::kNone for null.
@@ -38,8 +40,11 @@ class DeviceScene {
     /// Constants of a kernel that reads maps or textures, or adds to the film, with scalar::kSmoothConstant
     /// and kShadowCatchersConstant where the scene needs them.
     std::vector<uint32_t> add_filter(std::vector<uint32_t> constants) const;
-    /// The same, and scalar::kNormalMapsConstant, kInputTexturesConstant and kAnisotropyConstant, for the
-    /// kernel that finds shading normals.
+    /// Constants of a kernel that walks the scene trees, with scalar::kPolygonsConstant, kTilesConstant and
+    /// kRayLodConstant.
+    std::vector<uint32_t> add_contents(std::vector<uint32_t> constants, LodRule lod) const;
+    /// The same as add_filter, and scalar::kNormalMapsConstant, kInputTexturesConstant and
+    /// kAnisotropyConstant, for the kernel that finds shading normals.
     std::vector<uint32_t> add_normal_maps(std::vector<uint32_t> constants) const;
     /// That of add_filter, and scalar::kLayersConstant, kGlassConstant, kTerminatorsConstant,
     /// kInputTexturesConstant and kAnisotropyConstant, for a kernel that knows what scatters.
@@ -57,7 +62,7 @@ class DeviceScene {
     void add_map(const Surface& surface);
     void add_surfaces(const PreparedScene& scene, Arrays& arrays);
     void add_instances(const PreparedScene& scene, Arrays& arrays);
-    void add_tree_levels(const Surface& surface, const LevelField& levels);
+    void add_tree_levels(const PreparedScene& scene);
     void add_trees(const PreparedScene& scene, Arrays& arrays);
     void add_walk(const SceneWalk& walk, Arrays& arrays);
     void upload(const Device& device, Arrays& arrays);
@@ -66,9 +71,10 @@ class DeviceScene {
     std::map<const Texture*, uint32_t> texture_indices_;
     TraversalKernel traversal_kernel_{"scene_traversal", {}, {}};
     uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0, tree_levels_ = 0;
+    uint64_t tree_bytes_ = 0;
     size_t node_count_ = 0;
     bool has_smooth_ = false, has_layers_ = false, has_normal_maps_ = false, has_glass_ = false;
-    bool has_catchers_ = false;
+    bool has_catchers_ = false, has_bicubic_ = false, has_polygons_ = false, has_tiles_ = false;
     Terminators terminators_ = Terminators::none;
     bool has_input_textures_ = false, has_anisotropy_ = false;
     struct Binding {

@@ -1,5 +1,6 @@
 #include "vulkan/patch_tree_cache.h"
 #include "formulas/patch_tree.h"
+#include "relief/render.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_rays.h"
 
@@ -13,25 +14,56 @@ namespace {
 constexpr uint64_t kUnitBytes = scalar::kPoolUnitWords * sizeof(uint32_t);
 constexpr uint64_t kLeastBytes = uint64_t(1) << 20;    ///< room for a few of the largest trees
 constexpr uint64_t kWorkingBytes = uint64_t(64) << 20; ///< size of the pool without a cache
-constexpr uint32_t kBudgetShare = 4;                   ///< a wave may fill 1 / kBudgetShare of the pool
+constexpr uint32_t kBudgetShare = 4;                   ///< a wave may overwrite 1 / kBudgetShare of the pool
+constexpr uint64_t kDeviceShare = 4;                   ///< the pool may take 1 / kDeviceShare of what is free
+constexpr uint64_t kGrowth = 4;
+
+/// A GPU has work for all its lanes only where the trees of a wave have room.
+uint64_t choose_bytes(const Device& device, const PoolLimits& limits) {
+    const bool is_kept = limits.cap_bytes.value_or(1) > 0;
+    if (is_kept && limits.cap_bytes) return *limits.cap_bytes;
+    const uint64_t usual = is_kept ? kDefaultCacheBytes : kWorkingBytes;
+    // Levels that several rays see differently, and tiles, take more than is known.
+    return device.is_cpu() ? usual : std::max(usual, limits.tree_bytes + limits.tree_bytes / 8);
+}
 
 } // namespace
 
-PatchTreeCache::PatchTreeCache(const Device& device, uint64_t cap_bytes, uint32_t last_head)
-    : is_kept_(cap_bytes > 0), last_head_(last_head) {
-    const uint64_t wanted = std::max(is_kept_ ? cap_bytes : kWorkingBytes, kLeastBytes);
-    const uint64_t bytes =
-        std::max(kLeastBytes, std::min({wanted, device.max_buffer_bytes(), device.available_bytes() / 4}));
+PatchTreeCache::PatchTreeCache(const Device& device, const PoolLimits& limits)
+    : device_(device), is_kept_(limits.cap_bytes.value_or(1) > 0), last_head_(limits.last_head) {
+    const uint64_t most = std::min(device.max_buffer_bytes(), device.available_bytes() / kDeviceShare);
+    if (!limits.cap_bytes && !device.is_cpu()) most_bytes_ = most;
+    make_pool(std::max(kLeastBytes, std::min(choose_bytes(device, limits), most)));
+}
+
+void PatchTreeCache::make_pool(uint64_t bytes) {
     capacity_ = uint32_t(bytes / kUnitBytes);
-    pool_ = Buffer(device, {"patch trees", capacity_ * kUnitBytes, Purpose::bottom_cache});
+    pool_ = {}; // frees its memory
+    pool_ = Buffer(device_, {"patch trees", capacity_ * kUnitBytes, Purpose::bottom_cache});
 }
 
 void PatchTreeCache::bind(BindingTable& bindings) const { bindings.bind(scalar::kBindPool, pool_); }
 
-void PatchTreeCache::begin_chunk(const Buffer& trees, Commands& commands) {
-    if (head_ < last_head_) return;
+void PatchTreeCache::grow(Commands& commands, BindingTable& bindings) {
+    commands.run(); // what was recorded may use the pool
+    make_pool(std::min(kGrowth * pool_.byte_count(), most_bytes_));
+    bind(bindings);
+}
+
+void PatchTreeCache::begin_chunk(const Buffer& trees, Commands& commands, BindingTable& bindings) {
+    const bool is_growing = is_too_small_ && pool_.byte_count() + kLeastBytes <= most_bytes_;
+    if (head_ < last_head_ && !is_growing) return;
+    if (is_growing) grow(commands, bindings);
+    is_too_small_ = false;
     head_ = 0;
     commands.fill(trees, 0, trees.byte_count(), 0);
+}
+
+/// Units that a wave may take: all that no tree has had yet, or a share of the pool. Without a cache all of
+/// it.
+uint32_t PatchTreeCache::find_budget() const {
+    if (!is_kept_) return capacity_;
+    return std::max(capacity_ / kBudgetShare, capacity_ - std::min(head_, capacity_));
 }
 
 void PatchTreeCache::begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands) {
@@ -41,14 +73,14 @@ void PatchTreeCache::begin_wave(scalar::CastPush& push, const Buffer& counters, 
     push.wave = wave_;
     push.pool_start = head_;
     push.pool_capacity = capacity_;
-    push.pool_budget = is_kept_ ? capacity_ / kBudgetShare : capacity_;
+    push.pool_budget = find_budget();
     push.is_cached = is_kept_;
 }
 
 void PatchTreeCache::end_wave(const scalar::CounterData& counters) {
     // Allocations refused at the end of the wave advanced the counter as well.
-    const uint32_t limit = head_ + (is_kept_ ? capacity_ / kBudgetShare : capacity_);
-    head_ = std::min(counters.pool_head, limit);
+    head_ = std::min(counters.pool_head, head_ + find_budget());
+    is_too_small_ |= counters.deferred_count > 0 || head_ > capacity_;
 }
 
 } // namespace relief::vulkan

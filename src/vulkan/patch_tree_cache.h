@@ -2,6 +2,8 @@
 // overwritten. Counterpart of cpu/patch_trees/patch_tree_cache.h; looked up by shaders/bottom_cache.comp.
 #pragma once
 
+#include <optional>
+
 #include "vulkan/device/buffer.h"
 #include "vulkan/device/commands.h"
 #include "vulkan/device/kernel.h"
@@ -9,16 +11,23 @@
 
 namespace relief::vulkan {
 
+/// What the pool of a cache may take.
+struct PoolLimits {
+    std::optional<uint64_t> cap_bytes; ///< 0: trees live for one wave; none: as much as a device can spare
+    uint64_t tree_bytes = 0;           ///< of the trees of all patches, as far as they are known
+    uint32_t last_head = 1u << 31;     ///< after it addresses restart, trees are discarded
+};
+
 /// Not thread safe.
 class PatchTreeCache {
   public:
-    /// `cap_bytes` 0: trees live for one wave. `last_head`: after it addresses restart, trees are discarded.
-    PatchTreeCache(const Device& device, uint64_t cap_bytes, uint32_t last_head);
+    PatchTreeCache(const Device& device, const PoolLimits& limits);
 
     void bind(BindingTable& bindings) const;
 
-    /// Call before the jobs of a chunk of rays are collected. May clear the records of all trees in `trees`.
-    void begin_chunk(const Buffer& trees, Commands& commands);
+    /// Call before the jobs of a chunk of rays are collected. May clear the records of all trees in `trees`:
+    /// where addresses restart, and where the pool grows because trees had to wait or were overwritten.
+    void begin_chunk(const Buffer& trees, Commands& commands, BindingTable& bindings);
 
     /// Fills in the push constants of a wave of jobs and records the commands that precede it.
     void begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands);
@@ -26,11 +35,18 @@ class PatchTreeCache {
     void end_wave(const scalar::CounterData& counters);
 
   private:
+    void make_pool(uint64_t bytes);
+    void grow(Commands& commands, BindingTable& bindings);
+    uint32_t find_budget() const;
+
+    const Device& device_;
     Buffer pool_;
     bool is_kept_;
     uint32_t last_head_;
-    uint32_t capacity_; ///< units
-    uint32_t head_ = 0; ///< next address, units
+    uint64_t most_bytes_ = 0; ///< that the pool may grow to
+    bool is_too_small_ = false;
+    uint32_t capacity_ = 0; ///< units
+    uint32_t head_ = 0;     ///< next address, units
     uint32_t wave_ = 0;
 };
 

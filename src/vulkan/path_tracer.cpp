@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "base/timer.h"
 #include "engine/stop_request.h"
 #include "formulas/light_layers.h"
@@ -26,10 +27,11 @@ static_assert(sizeof(scalar::PathPush) <= scalar::kMaxPushBytes);
 static_assert(sizeof(scalar::PathData) == 96 && sizeof(scalar::SurfacePointData) == 68);
 static_assert(sizeof(scalar::SurfacePointData) == scalar::kSurfacePointWords * sizeof(uint32_t));
 static_assert(sizeof(scalar::InputNumbers) == scalar::kInputWords * sizeof(uint32_t));
-static_assert(sizeof(scalar::FilmSumsData) == scalar::kFilmSumsWords * sizeof(uint32_t));
 static_assert(kLightKinds.size() == scalar::kKindCount);
 static_assert(offsetof(scalar::CounterData, shadow_count) ==
               offsetof(scalar::CounterData, path_count) + sizeof(uint32_t));
+
+constexpr size_t kRangesAtOnce = 16;
 
 /// Of one path, in all samples of a launch.
 constexpr uint64_t kFirstHitBytes = PathTracer::kSamplesPerLaunch * sizeof(uint32_t);
@@ -68,20 +70,24 @@ uint64_t find_point_bytes(const PreparedScene& scene, uint64_t capacity) {
     return bytes + (scene.has_anisotropy ? capacity * sizeof(Vec3f) : 0);
 }
 
-/// `hit_ids` outlives the sums.
-FilmSums make_sums(const scalar::FilmSumsData& data, int sample_count, std::span<const uint32_t> hit_ids) {
-    FilmSums sums;
-    sums.count = uint32_t(sample_count);
-    sums.hit_count = uint32_t(data.hit_count), sums.light_count = uint32_t(data.light_count);
-    sums.radiance = data.radiance;
-    sums.squares = {data.squares.x, data.squares.y, data.squares.z};
-    sums.cost = data.cost;
-    sums.shading_normal = data.shading_normal, sums.geometric_normal = data.geometric_normal;
-    sums.position = data.position, sums.albedo = data.albedo;
-    sums.uv = data.uv, sums.shadow = data.shadow;
-    sums.depth = data.depth, sums.id = data.id;
-    sums.hit_ids = hit_ids;
-    return sums;
+/// Those of the ranges, one after the other.
+std::vector<uint32_t> list_pixels(std::span<const PixelRange> ranges) {
+    std::vector<uint64_t> begins = {0};
+    for (const PixelRange& range : ranges) begins.push_back(begins.back() + range.count);
+    std::vector<uint32_t> pixels(begins.back());
+    parallel_for("list_pixels", ranges.size(), kRangesAtOnce, [&](size_t begin, size_t end) {
+        for (size_t r = begin; r < end; ++r) {
+            const Window& window = ranges[r].window;
+            for (uint64_t k = 0; k < ranges[r].count; ++k) {
+                const scalar::PixelPlace place =
+                    scalar::place_pixel(uint32_t(ranges[r].first + k), uint32_t(window.x1 - window.x0),
+                                        uint32_t(window.y1 - window.y0));
+                pixels[begins[r] + k] =
+                    scalar::pack_pixel(uint32_t(window.x0) + place.x, uint32_t(window.y0) + place.y);
+            }
+        }
+    });
+    return pixels;
 }
 
 } // namespace
@@ -93,7 +99,8 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
       capacity_(uint32_t(tracer.rays().byte_count() / sizeof(scalar::RayData) / 2)),
       light_layers_(find_light_layers(settings.image.layers)),
       notes_first_hits_(needs_mattes(settings.image.layers)),
-      lights_(tracer.device(), tracer.scene(), tracer.device_scene()) {
+      lights_(tracer.device(), tracer.scene(), tracer.device_scene()),
+      film_reader_(tracer.device(), capacity_) {
     DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
@@ -169,19 +176,12 @@ void PathTracer::make_buffers() {
 void PathTracer::trace_samples(Film& film, std::span<const PixelRange> pixels, SampleRange samples,
                                const std::function<void(uint64_t)>& on_samples) {
     DCHECK(!pixels.empty() && (!rasteriser_ || pixels.size() == 1));
-    pixels_.clear();
-    for (const PixelRange& range : pixels) {
-        const Window& window = range.window;
-        for (uint64_t k = range.first; k < range.first + range.count; ++k) {
-            const scalar::PixelPlace place = scalar::place_pixel(uint32_t(k), uint32_t(window.x1 - window.x0),
-                                                                 uint32_t(window.y1 - window.y0));
-            pixels_.push_back(
-                scalar::pack_pixel(uint32_t(window.x0) + place.x, uint32_t(window.y0) + place.y));
-        }
-    }
+    std::vector<uint32_t> listed = list_pixels(pixels);
+    const bool is_new = listed != pixels_;
+    pixels_ = std::move(listed);
     DCHECK(pixels_.size() <= capacity_);
     drawn_ = pixels.front();
-    pixel_list_.upload(pixels_);
+    if (is_new) pixel_list_.upload(pixels_);
     for (int k = 0; k < samples.count; k += kSamplesPerLaunch)
         trace_batch(film, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)}, on_samples);
 }
@@ -201,7 +201,9 @@ void PathTracer::trace_batch(Film& film, SampleRange samples,
             if (whole_sums_) commands.copy(film_sums_, 0, whole_sums_, 0, sum_bytes);
             if (whole_sums_ && light_bytes > 0)
                 commands.copy(film_sums_, find_light_sums(), whole_sums_, find_light_sums(), light_bytes);
-            if (whole_sums_ || done + 1 == samples.count) commands.run();
+            const bool is_last = done + 1 == samples.count;
+            if (is_last) film_reader_.fetch(commands, film, film_sums_, points_, uint32_t(pixels_.size()));
+            if (whole_sums_ || is_last) commands.run();
             if (whole_sums_) on_samples(pixels_.size());
         }
     } catch (const StopRequest&) {
@@ -412,20 +414,11 @@ void PathTracer::add_to_film(Film& film, const Buffer& device_sums, int sample_c
     DCHECK(notes_first_hits_ || !film.needs_hit_ids());
     const size_t light_count = light_layers_.count();
     DCHECK(light_count == film.light_layers().count());
-    const std::vector<scalar::FilmSumsData> sums = device_sums.download<scalar::FilmSumsData>(pixels_.size());
     const std::vector<uint32_t> first_hits = download_first_hits(sample_count);
     const std::vector<Vec3f> lights =
         light_count == 0 ? std::vector<Vec3f>()
                          : device_sums.download<Vec3f>(pixels_.size() * light_count, find_light_sums());
-    std::vector<uint32_t> hit_ids;
-    for (size_t k = 0; k < sums.size(); ++k) {
-        hit_ids.clear();
-        for (size_t n = k; n < first_hits.size(); n += sums.size())
-            if (first_hits[n] != 0) hit_ids.push_back(first_hits[n]);
-        const int x = int(pixels_[k] & 0xffff), y = int(pixels_[k] >> 16);
-        film.add_sums(x, y, make_sums(sums[k], sample_count, hit_ids));
-        if (light_count > 0) film.add_lights(x, y, {lights.data() + k * light_count, light_count});
-    }
+    film_reader_.add(film, device_sums, {pixels_, sample_count, first_hits, lights});
     film_s_ += timer.seconds();
     for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
     batch_casts_.clear();

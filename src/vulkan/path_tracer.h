@@ -13,6 +13,7 @@
 #include "formulas/camera.h"
 #include "relief/render.h"
 #include "vulkan/device_lights.h"
+#include "vulkan/film_reader.h"
 #include "vulkan/layout/device_paths.h"
 #include "vulkan/rasteriser.h"
 #include "vulkan/tracer.h"
@@ -85,6 +86,7 @@ class PathTracer {
     LightLayers light_layers_;
     bool notes_first_hits_; ///< of every sample, behind the film's other sums
     DeviceLights lights_;
+    FilmReader film_reader_;
     Kernel camera_kernel_, background_, surface_point_, shading_normal_, meet_surface_, light_sample_,
         bounce_, far_rays_, inner_hits_, shadow_light_, film_;
     std::optional<Kernel> cut_outs_;                ///< where the scene has some

@@ -56,7 +56,7 @@ struct Tracer::Implementation {
           bindings(d),
           commands(d, bindings),
           directories(d, s, ds),
-          cache(d, settings.surface.cache_bytes.value_or(kDefaultCacheBytes), c.pool_restart_units),
+          cache(d, {settings.surface.cache_bytes, ds.tree_bytes(), c.pool_restart_units}),
           sort(d),
           buffers(d, config, sort.histogram_words(config.pair_capacity)),
           kernels(d, ds, settings, config, ds.stack_size() + directories.stack_size()) {
@@ -174,7 +174,7 @@ uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
 
 void Tracer::Implementation::trace_chunk() {
     push.is_repeated = 0;
-    cache.begin_chunk(buffers.trees, commands);
+    cache.begin_chunk(buffers.trees, commands, bindings);
     clear(offsetof(CounterData, pair_count), sizeof(uint32_t));
     clear(offsetof(CounterData, rays_lost), sizeof(uint32_t));
     do traverse_scene();

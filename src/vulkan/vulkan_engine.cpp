@@ -25,6 +25,8 @@ namespace vulkan {
 namespace {
 
 constexpr uint32_t kMostPaths = 1u << 20;
+constexpr uint32_t kMostPathsOfLargeDevice = 1u << 21;
+constexpr uint64_t kLargeDeviceBytes = uint64_t(12) << 30; ///< free
 constexpr uint32_t kLeastPaths = 1u << 12; ///< with less, the device has too little memory to render
 constexpr uint32_t kRaysOfABatch = 1u << 17;
 constexpr uint32_t kSlots = 4;
@@ -94,7 +96,10 @@ void VulkanEngine::make_paths(const Window& window) {
     const Timer set_up;
     // Every path has a ray and a shadow ray.
     paths_ = {}; // frees its memory
-    paths_ = {{2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kMostPaths)),
+    const bool is_large = !device_->is_cpu() && settings_.experiment.method != RenderMethod::hybrid &&
+                          device_->available_bytes() >= kLargeDeviceBytes;
+    const uint32_t most = is_large ? kMostPathsOfLargeDevice : kMostPaths;
+    paths_ = {{2 * uint32_t(std::clamp<uint64_t>(pixels, 1, most)),
                2 * uint32_t(std::clamp<uint64_t>(pixels, 1, kLeastPaths))},
               [this](uint32_t rays) { return make_tracer(rays, 2); },
               [this](Tracer& tracer) { return std::make_unique<PathTracer>(tracer, settings_); }};

@@ -1,6 +1,7 @@
 #include "vulkan/device/device.h"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include <fmt/format.h>
@@ -9,6 +10,12 @@
 #include "vulkan/device/errors.h"
 
 namespace relief::vulkan {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLongestSpin{2};
+
+} // namespace
 
 Device::Implementation::Implementation(const Config& config)
     : shared(share_device(config)), is_staged(config.is_staged) {
@@ -32,6 +39,11 @@ void Device::Implementation::submit_and_wait(const vk::raii::CommandBuffer& comm
             const std::lock_guard lock(shared->queue_mutex);
             shared->queue.submit2(vk::SubmitInfo2({}, {}, part, {}), *fence);
         }
+        // Interrupts take longer than most launches of a GPU; a CPU device needs the core.
+        const auto begin = std::chrono::steady_clock::now();
+        while (!shared->description.is_cpu && fence.getStatus() == vk::Result::eNotReady &&
+               std::chrono::steady_clock::now() - begin < kLongestSpin)
+            ;
         const uint64_t forever = std::numeric_limits<uint64_t>::max();
         static_cast<void>(shared->device.waitForFences(*fence, true, forever));
         shared->device.resetFences(*fence);

@@ -19,6 +19,10 @@ void require_features(const vk::raii::PhysicalDevice& device, std::vector<std::s
     const auto& core = chain.get<vk::PhysicalDeviceFeatures2>().features;
     const auto& with_12 = chain.get<vk::PhysicalDeviceVulkan12Features>();
     const auto& with_13 = chain.get<vk::PhysicalDeviceVulkan13Features>();
+    const auto properties =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>();
+    const vk::SubgroupFeatureFlags subgroups =
+        properties.get<vk::PhysicalDeviceSubgroupProperties>().supportedOperations;
     const auto require = [&](vk::Bool32 is_there, const char* name) {
         if (!is_there) missing.emplace_back(name);
     };
@@ -28,6 +32,8 @@ void require_features(const vk::raii::PhysicalDevice& device, std::vector<std::s
     require(with_12.hostQueryReset, "hostQueryReset");
     require(with_13.synchronization2, "synchronization2");
     require(with_13.maintenance4, "maintenance4");
+    require(bool(subgroups & vk::SubgroupFeatureFlagBits::eArithmetic), "VK_SUBGROUP_FEATURE_ARITHMETIC_BIT");
+    require(bool(subgroups & vk::SubgroupFeatureFlagBits::eBallot), "VK_SUBGROUP_FEATURE_BALLOT_BIT");
 }
 
 void require_limits(const vk::PhysicalDeviceLimits& limits, std::vector<std::string>& missing) {

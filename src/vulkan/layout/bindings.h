@@ -115,6 +115,13 @@ const uint kInputTexturesConstant = 20u;
 const uint kGuidesConstant = 21u;
 // Of kernels that scatter or find shading normals: not 0 where the roughness of a material has a direction.
 const uint kAnisotropyConstant = 22u;
+// Of kernels that evaluate patches: not 0 where the base of a surface is bicubic.
+const uint kBicubicConstant = 23u;
+// Of kernels that walk the scene trees: 0 where no surface is without displacement; where no patch is above
+// level 5; where levels are those of the view.
+const uint kPolygonsConstant = 24u;
+const uint kTilesConstant = 25u;
+const uint kRayLodConstant = 26u;
 
 #include "formulas/end.h"
 #endif

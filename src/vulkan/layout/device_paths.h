@@ -57,6 +57,19 @@ struct FilmSumsData {
 };
 
 const uint kFilmSumsWords = 28u; ///< of FilmSumsData
+
+/// What FilmSumsData begins with.
+struct FilmColorsData {
+    Vec3 radiance, squares;
+    float cost, hit_count, light_count;
+};
+
+const uint kFilmColorsWords = 9u; ///< of FilmColorsData
+
+struct FilmColorsPush {
+    uint word_count; ///< of all pixels
+};
+
 /// Of a path, in the film's buffer behind all sums of light: LightShares of the light that was drawn at its
 /// first vertex and of what comes there; the group of the light that was drawn last; whether its guides are
 /// found.

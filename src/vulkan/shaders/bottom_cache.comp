@@ -35,13 +35,13 @@ void main() {
     if (record.need == 0u) return;
     bool is_kept = is_alive(record);
     if (is_kept && does_cover(record.coverage, record.need)) {
-        atomicAdd(counters.reused, 1u);
+        COUNT(counters.reused);
     } else {
         uint coverage = record.need | (is_kept ? record.coverage : 0u);
         uint level = uint(findMSB(coverage & kLevelBits));
         uint address = allocate(count_tree_units(level));
         if (address == kNone) {
-            atomicAdd(counters.deferred_count, 1u);
+            COUNT(counters.deferred_count);
             return;
         }
         trees[tree].coverage = coverage;
@@ -53,5 +53,5 @@ void main() {
     }
     trees[tree].need = 0u;
     trees[tree].ready_wave = push.wave;
-    atomicAdd(counters.jobs_done, 1u);
+    COUNT(counters.jobs_done);
 }

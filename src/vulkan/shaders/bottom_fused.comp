@@ -13,9 +13,9 @@ shared uint shared_job;
 void work_on(uint tree) {
     TreeRecord record = trees[tree];
     if (record.ready_wave != push.wave) return; // uniform over the group
-    BuildJob job = make_build_job(tree, push.patch_count, push.pool_capacity);
+    BuildJob job = make_build_job(tree, 0u, push.patch_count, push.pool_capacity);
     job.is_real = record.build_wave == push.wave;
-    if (job.is_real) build_tree(job, 0u, gl_LocalInvocationID.x);
+    if (job.is_real) build_tree(job, gl_LocalInvocationID.x);
     wait_for_group();
     uint end = min(record.end - record.begin, kMostPairs) + record.begin;
     for (uint place = record.begin + gl_LocalInvocationID.x; place < end; place += kLanes)

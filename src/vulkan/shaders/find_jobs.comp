@@ -1,15 +1,32 @@
-// Groups the sorted pairs into jobs: pairs per tree, the finest level of its rays and how much coarser edges are.
+// Completes candidates, and groups the sorted pairs into jobs: pairs per tree, the finest level of its rays and how much
+// coarser edges are.
 #include "vulkan/shaders/kernel.glsl"
-#include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"
-
-layout(scalar, push_constant) uniform Push { CastPush push; };
+#include "vulkan/shaders/ray_levels.glsl"
 
 uint find_need(uint tree, CandidateData candidate) {
     if (tree >= push.patch_count) return 1u << kTreeLevels;
-    uint field = push.is_ray_lod != 0u ? candidate.levels
-                                       : find_levels(instances[candidate.instance], candidate.patch_index);
+    uint field = kHasRayLod != 0u && push.is_ray_lod != 0u
+                     ? candidate.levels
+                     : find_levels(instances[candidate.instance], candidate.patch_index);
     return make_need(packed_patch_level(candidate.levels), field);
+}
+
+/// Fills in what the walk of its ray had no registers for.
+CandidateData complete_candidate(uint place) {
+    CandidateData candidate = candidates[place];
+    if (candidate.tree >= push.patch_count) {
+        TileRecord tile = tile_records[candidate.tree - push.patch_count];
+        candidate.patch_index = tile.patch_index;
+        candidate.levels = tile.levels;
+    } else {
+        uint ray_index = active_rays[push.first + place / push.slots];
+        candidate.patch_index = candidate.tree - surfaces[instances[candidate.instance].surface].first_quad;
+        candidate.levels = choose_levels(ray_index, candidate.instance, candidate.patch_index);
+    }
+    candidates[place].patch_index = candidate.patch_index;
+    candidates[place].levels = candidate.levels;
+    return candidate;
 }
 
 void main() {
@@ -23,6 +40,6 @@ void main() {
         jobs[job] = tree;
     }
     if (place + 1u == count || pairs[place + 1u].x != tree) trees[tree].end = place + 1u;
-    uint need = find_need(tree, candidates[pairs[place].y]);
+    uint need = find_need(tree, complete_candidate(pairs[place].y));
     if ((trees[tree].need & need) != need) atomicOr(trees[tree].need, need);
 }

@@ -6,13 +6,13 @@
 
 layout(constant_id = 1) const uint kStackSize = 128;
 
-uint stack_node[kStackSize];
-float stack_entry[kStackSize];
+/// Nodes and the bits of their entries, in one array: drivers keep small ones in registers, where an index that varies
+/// costs a comparison an entry.
+uvec2 stack[kStackSize];
 uint stack_size = 0u;
 
 void push_node(uint node, float entry) {
-    stack_node[stack_size] = node;
-    stack_entry[stack_size] = entry;
+    stack[stack_size] = uvec2(node, floatBitsToUint(entry));
     ++stack_size;
 }
 
@@ -23,7 +23,7 @@ void enter_inner(uint first, float parent_entry) {
         int place = 2 * int(first) + 2 * k;
         vec3 lower = uintBitsToFloat(texelFetch(nodes, place).xyz);
         vec3 upper = uintBitsToFloat(texelFetch(nodes, place + 1).xyz);
-        BoxInterval interval = cross_box(ray, lower, upper, world.t_min, world.t_max);
+        BoxInterval interval = cross_box(ray, lower, upper, ray_t_min, ray_t_max);
         entry[k] = max(interval.entry, parent_entry);
         wanted[k] = is_wanted(interval, entry[k]);
     }

@@ -148,7 +148,9 @@ VertexData blend_corners(VertexData c0, VertexData c1, VertexData c2, VertexData
     return result;
 }
 
-bool is_bicubic(SurfaceData s) { return s.first_control != kNone; }
+layout(constant_id = kBicubicConstant) const uint kHasBicubic = 0;
+
+bool is_bicubic(SurfaceData s) { return kHasBicubic != 0u && s.first_control != kNone; }
 
 /// Control point of a bicubic patch (formulas/control_points.h).
 vec3 load_control(SurfaceData s, uvec4 quad, uint patch_index, uint number) {
@@ -271,24 +273,30 @@ VertexData evaluate_place(SurfaceData s, uvec4 quad, uint patch_index, LinePlace
     return base;
 }
 
-/// Sample (i, j) of a patch with loaded corners.
-vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packed_levels, uint i, uint j) {
+bool is_on_boundary(uint packed_levels, uint i, uint j) {
+    uint n = 1u << packed_patch_level(packed_levels);
+    return i == 0u || j == 0u || i == n || j == n;
+}
+
+/// The place of a sample for which is_on_boundary holds.
+LinePlace find_boundary_place(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uint i, uint j) {
     uint level = packed_patch_level(packed_levels);
     uint n = 1u << level;
-    bool is_on_u_edge = j == 0u || j == n;
-    bool is_on_v_edge = i == 0u || i == n;
+    if ((i == 0u || i == n) && (j == 0u || j == n))
+        return find_corner(s, quad, j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u));
+    return find_edge_place(s, quad, patch_index, packed_levels, uvec3(i, j, find_sample_edge(i, j, level)));
+}
+
+/// Sample (i, j) of a patch with loaded corners.
+vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packed_levels, uint i, uint j) {
     VertexData base;
     uint mip_place = kMipInside;
-    if (is_on_u_edge || is_on_v_edge) {
-        LinePlace place;
-        if (is_on_u_edge && is_on_v_edge)
-            place = find_corner(s, c.quad, j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u));
-        else
-            place = find_edge_place(s, c.quad, patch_index, packed_levels, uvec3(i, j, find_sample_edge(i, j, level)));
+    if (is_on_boundary(packed_levels, i, j)) {
+        LinePlace place = find_boundary_place(s, c.quad, patch_index, packed_levels, i, j);
         base = evaluate_place(s, c.quad, patch_index, place);
         mip_place = place.mip_place;
     } else {
-        float cell = 1.0 / float(n);
+        float cell = 1.0 / float(1u << packed_patch_level(packed_levels));
         base = blend_corners(c.corner[0], c.corner[1], c.corner[2], c.corner[3], float(i) * cell, float(j) * cell);
         if (is_bicubic(s)) base.position = evaluate_base(s, c.quad, patch_index, float(i) * cell, float(j) * cell);
     }

@@ -170,17 +170,15 @@ void trace_pair(uvec2 pair, CastPush push) {
     float t = nearest_distance(nearest[place]);
     CandidateData candidate = candidates[pair.y];
     if (candidate.entry > t * kBoxSlack) {
-        atomicAdd(counters.pairs_done, 1u);
+        COUNT(counters.pairs_done);
         return;
     }
     RayData world = rays[active_rays[push.first + place]];
     PatchVisit visit = enter_tree(pair.x, candidate, world, push.patch_count, push.pool_capacity);
     visit.t = t;
-    if (walk_tree(visit, push.is_any != 0u)) {
-        atomicAdd(counters.pairs_done, 1u);
-    }
+    if (walk_tree(visit, push.is_any != 0u)) COUNT(counters.pairs_done);
     if (!visit.has_hit) return;
-    atomicAdd(counters.pairs_with_hit, 1u);
+    COUNT(counters.pairs_with_hit);
     uint64_t found = push.is_any != 0u ? make_nearest(-kInfinity, 0u)
                                        : make_nearest(visit.t, find_slot_rank(pair.y, push.slots) << kCellBits | visit.cell);
     atomicMin(nearest[place], found);

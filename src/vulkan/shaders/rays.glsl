@@ -20,6 +20,18 @@ layout(scalar, set = 0, binding = kBindCounters) buffer Counters { CounterData c
 layout(scalar, set = 0, binding = kBindJobs) buffer Jobs { uint jobs[]; };
 layout(scalar, set = 0, binding = kBindBuilds) buffer Builds { uint builds[]; };
 
+/// Adds one for each lane that does so together to a counter that very many lanes add to. (A fragment's helper lanes
+/// write nothing, but may be elected.)
+#ifdef FULL_SCREEN
+#define COUNT(counter) atomicAdd(counter, 1u)
+#else
+#define COUNT(counter)                                                        \
+    {                                                                         \
+        uint counted = subgroupBallotBitCount(subgroupBallot(true));          \
+        if (subgroupElect()) atomicAdd(counter, counted);                     \
+    }
+#endif
+
 ObjectRay enter_object(RayData ray, InstanceData instance) {
     LocalStart start = find_local_start(ray.origin, ray.direction, instance.origin, instance.world_from_object.t,
                                         instance.reach);

@@ -3,11 +3,9 @@
 #ifndef RELIEF_SCENE_CANDIDATES_GLSL
 #define RELIEF_SCENE_CANDIDATES_GLSL
 
-#include "vulkan/shaders/rays.glsl"
 #include "formulas/patch_tree.h"
-#include "formulas/lod.h"
+#include "vulkan/shaders/ray_levels.glsl"
 
-layout(scalar, push_constant) uniform Push { CastPush push; };
 layout(set = 0, binding = kBindNodes) uniform usamplerBuffer nodes;
 layout(set = 0, binding = kBindPrimitiveIds) uniform usamplerBuffer primitive_ids;
 layout(scalar, set = 0, binding = kBindRequests) buffer Requests { RequestData requests[]; };
@@ -15,26 +13,34 @@ layout(scalar, set = 0, binding = kBindRequests) buffer Requests { RequestData r
 layout(scalar, set = 0, binding = kBindHistogram) buffer RequestBits { uint request_bits[]; };
 layout(scalar, set = 0, binding = kBindDirectories) readonly buffer Directories { DirectoryData directories[]; };
 
-RayData world;
-ObjectRay ray;
-InstanceData instance;
+uint ray_index;
+float ray_t_min, ray_t_max;
+ObjectRay ray;       ///< against boxes; polygons make their own
 uint instance_index; ///< kNone: in world space
-HitData best;
-CursorData cursor;
+float best_t;        ///< of the nearest polygon so far, which is in `hits`
+bool has_hit;
 
-// The nearest candidates so far, sorted.
-float slot_entry[kMostSlots];
-uint slot_instance[kMostSlots];
-uint slot_tree[kMostSlots];
-uint slot_levels[kMostSlots];
-uint slot_count = 0u;
+layout(constant_id = kPolygonsConstant) const uint kHasPolygons = 1;
+layout(constant_id = kTilesConstant) const uint kHasTiles = 1;
+
+/// A candidate in its slot, ordered by (entry, instance, tree).
+struct Slot {
+    float entry;
+    uint instance, tree;
+};
+
+// The nearest candidates so far, sorted. Only the last push.slots of the slots are used: those before hold what is
+// nearer than all, free ones what is further. Indices are constants, so that slots stay in registers.
+Slot slots[kMostSlots];
 bool is_blocked = false; ///< tiles are missing that the host must build first
 
-/// Distance beyond which this round ignores everything.
-float find_limit() {
-    float limit = slot_count == push.slots ? min(best.t, slot_entry[push.slots - 1u]) : best.t;
-    return limit * kBoxSlack;
+void clear_slots() {
+    for (uint k = 0u; k < kMostSlots; ++k)
+        slots[k] = Slot(k + push.slots < kMostSlots ? -kInfinity : kInfinity, kNone, kNone);
 }
+
+/// Distance beyond which this round ignores everything.
+float find_limit() { return min(best_t, slots[kMostSlots - 1u].entry) * kBoxSlack; }
 
 bool is_after(float entry, uint at_instance, uint tree, CursorData mark) {
     if (entry != mark.entry) return entry > mark.entry;
@@ -42,53 +48,31 @@ bool is_after(float entry, uint at_instance, uint tree, CursorData mark) {
     return tree > mark.tree;
 }
 
-bool is_slot_after(uint place, CursorData mark) {
-    return is_after(slot_entry[place], slot_instance[place], slot_tree[place], mark);
+bool is_slot_after(Slot slot, Slot other) {
+    return is_after(slot.entry, slot.instance, slot.tree, CursorData(other.entry, other.instance, other.tree));
 }
 
 bool is_offered(uint tree) {
-    for (uint k = 0u; k < slot_count; ++k)
-        if (slot_tree[k] == tree && slot_instance[k] == instance_index) return true;
-    return false;
+    bool is_there = false;
+    for (uint k = 0u; k < kMostSlots; ++k)
+        is_there = is_there || (slots[k].tree == tree && slots[k].instance == instance_index);
+    return is_there;
 }
 
 /// Inserts a tree of this instance if it follows the cursor and is among the nearest so far.
-void offer_candidate(uint tree, uint levels, float entry) {
-    if (push.round > 0u && !is_after(entry, instance_index, tree, cursor)) return;
-    CursorData own = CursorData(entry, instance_index, tree);
-    if (slot_count == push.slots && !is_slot_after(push.slots - 1u, own)) return;
+void offer_candidate(uint tree, float entry) {
+    if (push.round > 0u && !is_after(entry, instance_index, tree, cursors[ray_index])) return;
+    Slot moved = Slot(entry, instance_index, tree);
+    if (!is_slot_after(slots[kMostSlots - 1u], moved)) return;
     if (kMayOfferTwice && is_offered(tree)) return;
-    uint place = slot_count < push.slots ? slot_count : push.slots - 1u;
-    slot_count = min(slot_count + 1u, push.slots);
-    for (; place > 0u && is_slot_after(place - 1u, own); --place) {
-        slot_entry[place] = slot_entry[place - 1u];
-        slot_instance[place] = slot_instance[place - 1u];
-        slot_tree[place] = slot_tree[place - 1u];
-        slot_levels[place] = slot_levels[place - 1u];
+    for (uint k = 0u; k < kMostSlots; ++k) {
+        bool is_swapped = is_slot_after(slots[k], moved);
+        Slot nearer = slots[k];
+        if (is_swapped) {
+            slots[k] = moved;
+            moved = nearer;
+        }
     }
-    slot_entry[place] = entry;
-    slot_instance[place] = instance_index;
-    slot_tree[place] = tree;
-    slot_levels[place] = levels;
-}
-
-/// Packed levels of a patch for this ray.
-uint choose_levels(uint patch_index) {
-    uint levels = lower_packed_levels(find_levels(instance, patch_index), world.lod_bias);
-    if (push.is_ray_lod == 0u) return levels;
-    SurfaceData s = surfaces[instance.surface];
-    uvec4 quad = load_quad(s, patch_index);
-    float longest = 0.0;
-    vec3 sum = vec3(0.0);
-    for (uint k = 0u; k < 4u; ++k) {
-        vec3 from = load_position(s, quad[k]);
-        vec3 edge = load_position(s, quad[(k + 1u) & 3u]) - from;
-        longest = max(longest, length(transform_vector(instance.world_from_object, edge)));
-        sum += from;
-    }
-    vec3 middle = transform_point(instance.world_from_object, sum * 0.25);
-    float distance_there = find_passing_distance(world.origin, world.direction, world.t_min, middle);
-    return pack_uniform_level(choose_ray_level(longest, distance_there, push.pixel_angle, packed_patch_level(levels)));
 }
 
 /// Root of the tree over the tiles of a patch; kNone if the host has not built it yet.
@@ -116,10 +100,10 @@ void request_tiles(uint patch_number, RequestData request) {
 void enter_tiles(uint root, float entry);
 
 void enter_patch(uint patch_index, float entry) {
-    uint levels = choose_levels(patch_index);
-    uint patch_number = surfaces[instance.surface].first_quad + patch_index;
+    uint patch_number = surfaces[instances[instance_index].surface].first_quad + patch_index;
+    uint levels = kHasTiles == 0u ? 0u : choose_levels(ray_index, instance_index, patch_index);
     if (packed_patch_level(levels) <= kTreeLevels) {
-        offer_candidate(patch_number, levels, entry);
+        offer_candidate(patch_number, entry);
         return;
     }
     uint root = find_directory(patch_number, levels);
@@ -129,29 +113,37 @@ void enter_patch(uint patch_index, float entry) {
         request_tiles(patch_number, RequestData(instance_index, patch_index, levels));
 }
 
-void offer_triangle(uint patch_index, vec3 a, vec3 b, vec3 c, uint is_upper) {
-    TriangleHit found = intersect_sheared(ray, a, b, c, world.t_min, best.t);
-    if (found.t == kInfinity) return;
-    vec2 uv = place_in_cell(vec2(found.weight_b, found.weight_c), is_upper);
-    HitData hit = HitData(found.t, instance_index, patch_index, uv.x, uv.y, is_upper, 0u);
-    if (is_better(hit, best)) best = hit;
+void offer_hit(HitData hit) {
+    if (has_hit && !is_better(hit, hits[ray_index])) return;
+    hits[ray_index] = hit;
+    best_t = hit.t;
+    has_hit = true;
 }
 
+/// One half of a quad after the other.
 void intersect_polygon(uint patch_index) {
-    SurfaceData s = surfaces[instance.surface];
+    if (kHasPolygons == 0u) return;
+    SurfaceData s = surfaces[instances[instance_index].surface];
     uvec4 quad = load_quad(s, patch_index);
-    vec3 p0 = shear_vertex(ray, load_position(s, quad.x));
-    vec3 p1 = shear_vertex(ray, load_position(s, quad.y));
-    vec3 p2 = shear_vertex(ray, load_position(s, quad.z));
-    offer_triangle(patch_index, p0, p1, p2, 0u);
-    if (!is_triangle(quad)) offer_triangle(patch_index, p0, p2, shear_vertex(ray, load_position(s, quad.w)), 1u);
+    uint half_count = is_triangle(quad) ? 1u : 2u;
+    [[dont_unroll]] for (uint is_upper = 0u; is_upper < half_count; ++is_upper) {
+        ObjectRay whole = enter_object(rays[ray_index], instances[instance_index]);
+        vec3 a = shear_vertex(whole, load_position(s, quad.x));
+        vec3 b = shear_vertex(whole, load_position(s, is_upper == 0u ? quad.y : quad.z));
+        vec3 c = shear_vertex(whole, load_position(s, is_upper == 0u ? quad.z : quad.w));
+        TriangleHit found = intersect_sheared(whole, a, b, c, ray_t_min, best_t);
+        if (found.t != kInfinity) {
+            vec2 uv = place_in_cell(vec2(found.weight_b, found.weight_c), is_upper);
+            offer_hit(HitData(found.t, instance_index, patch_index, uv.x, uv.y, is_upper, 0u));
+        }
+    }
 }
 
 /// Independent of what this round has found so far.
 bool is_wanted_at_all(BoxInterval interval, float entry) {
     if (!is_box_met(interval)) return false;
     if (push.round == 0u || instance_index == kNone) return true;
-    return max(interval.exit, entry) * kBoxSlack >= cursor.entry;
+    return max(interval.exit, entry) * kBoxSlack >= cursors[ray_index].entry;
 }
 
 /// `entry`: at least that of every ancestor, so that skipped candidates follow all offered ones.
@@ -166,36 +158,48 @@ bool is_instance_seen(uint index) {
 
 void enter_instance(uint index) {
     instance_index = index;
-    instance = instances[index];
-    ray = enter_object(world, instance);
+    ray = enter_object(rays[ray_index], instances[index]);
 }
 
 void leave_instance() {
     instance_index = kNone;
-    ray = make_object_ray(world.origin, world.direction);
+    ray = make_object_ray(rays[ray_index].origin, rays[ray_index].direction);
 }
 
 /// Traverses the scene trees; false if the device ended a loop early.
 bool walk();
 
-CandidateData make_candidate(uint k) {
-    uint tree = slot_tree[k];
-    uint patch_index = tree >= push.patch_count
-                           ? tile_records[tree - push.patch_count].patch_index
-                           : tree - surfaces[instances[slot_instance[k]].surface].first_quad;
-    return CandidateData(slot_instance[k], tree, patch_index, slot_levels[k], slot_entry[k]);
+/// Takes `count` places in the list of pairs: one atomic operation for all lanes that do so together.
+uint take_pairs(uint count) {
+#ifdef FULL_SCREEN
+    return atomicAdd(counters.pair_count, count);
+#else
+    uint before = subgroupExclusiveAdd(count);
+    uint sum = subgroupAdd(count);
+    uint first = 0u;
+    if (subgroupElect()) first = atomicAdd(counters.pair_count, sum);
+    return subgroupBroadcastFirst(first) + before;
+#endif
 }
 
-/// Emits pairs for the candidates; a ray that waits for tiles emits none and repeats the round.
-void emit_candidates(uint place) {
-    if (is_blocked) slot_count = 0u;
-    uint first_pair = atomicAdd(counters.pair_count, slot_count);
-    for (uint k = 0u; k < push.slots; ++k) {
-        uint candidate = place * push.slots + k;
-        candidates[candidate].instance = kNone;
-        if (k < slot_count) {
-            candidates[candidate] = make_candidate(k);
-            pairs[first_pair + k] = uvec2(slot_tree[k], candidate);
+/// Emits pairs for the candidates; a ray that waits for tiles, or is done, emits none.
+void emit_candidates(uint place, bool is_done) {
+    uint count = 0u;
+    for (uint k = 0u; k < kMostSlots; ++k)
+        if (slots[k].tree != kNone) ++count;
+    if (is_blocked || is_done) count = 0u;
+    uint pair = take_pairs(count);
+    uint candidate = place * push.slots;
+    for (uint k = 0u; k < kMostSlots; ++k) {
+        if (k + push.slots >= kMostSlots) {
+            candidates[candidate].instance = kNone;
+            if (count > 0u && slots[k].tree != kNone) {
+                candidates[candidate] =
+                    CandidateData(slots[k].instance, slots[k].tree, 0u, 0u, slots[k].entry); // see find_jobs.comp
+                pairs[pair] = uvec2(slots[k].tree, candidate);
+                ++pair;
+            }
+            ++candidate;
         }
     }
     if (is_blocked) candidates[place * push.slots].tree = kNone;
@@ -208,22 +212,16 @@ bool is_waiting(uint place) {
 void trace_round() {
     uint place = invocation_index();
     if (place >= push.count || (push.is_repeated != 0u && !is_waiting(place))) return;
-    uint ray_index = active_rays[push.first + place];
-    world = rays[ray_index];
-    best = HitData(world.t_max, kNone, kNone, 0.0, 0.0, 0u, 0u);
-    if (push.round > 0u) {
-        cursor = cursors[ray_index];
-        if (hits[ray_index].instance != kNone) best = hits[ray_index];
-    }
+    ray_index = active_rays[push.first + place];
+    ray_t_min = rays[ray_index].t_min;
+    ray_t_max = rays[ray_index].t_max;
+    has_hit = push.round > 0u && hits[ray_index].instance != kNone;
+    best_t = has_hit ? hits[ray_index].t : ray_t_max;
+    clear_slots();
     if (push.root != kNone && !walk()) atomicAdd(counters.rays_lost, 1u);
-    if (push.is_any != 0u && best.instance != kNone) slot_count = 0u;
-    if (push.round == 0u || best.instance != kNone) {
-        HitData result = best;
-        if (best.instance == kNone) result.t = kInfinity;
-        hits[ray_index] = result;
-    }
-    nearest[place] = make_nearest(best.t, 0xffffffffu);
-    emit_candidates(place);
+    if (push.round == 0u && !has_hit) hits[ray_index] = HitData(kInfinity, kNone, kNone, 0.0, 0.0, 0u, 0u);
+    nearest[place] = make_nearest(best_t, 0xffffffffu);
+    emit_candidates(place, push.is_any != 0u && has_hit);
 }
 
 #endif

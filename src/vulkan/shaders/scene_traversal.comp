@@ -14,15 +14,16 @@ void enter_tiles(uint root, float entry) { push_node(root, entry); }
 /// False if the device ended the loop before the stack was empty.
 bool walk() {
     uint world_size = 0u; // stack entries that belong to the tree of instances
-    push_node(push.root, world.t_min);
+    push_node(push.root, ray_t_min);
     leave_instance();
     for (uint popped = 0u; popped < 0xffffffffu; ++popped) {
         if (stack_size == 0u) return true;
         --stack_size;
         if (instance_index != kNone && stack_size < world_size) leave_instance();
-        float entry = stack_entry[stack_size];
+        uvec2 top = stack[stack_size];
+        float entry = uintBitsToFloat(top.y);
         if (entry > find_limit()) continue;
-        uint node = stack_node[stack_size];
+        uint node = top.x;
         uint first = texelFetch(nodes, 2 * int(node)).w;
         uint kind_and_count = texelFetch(nodes, 2 * int(node) + 1).w;
         uint kind = kind_and_count >> kNodeKindShift;
@@ -32,15 +33,15 @@ bool walk() {
             if (!is_instance_seen(first)) continue;
             world_size = stack_size;
             enter_instance(first);
-            push_node(instance.root, entry);
+            push_node(instances[first].root, entry);
         } else if (kind == kNodePatch)
             enter_patch(first, entry);
         else if (kind == kNodeTile)
-            offer_candidate(first, tile_records[first - push.patch_count].levels, entry);
+            offer_candidate(first, entry);
         else {
             uint count = kind_and_count & ((1u << kNodeKindShift) - 1u);
             for (uint k = 0u; k < count; ++k) intersect_polygon(texelFetch(primitive_ids, int(first + k)).x);
-            if (push.is_any != 0u && best.instance != kNone) return true;
+            if (push.is_any != 0u && has_hit) return true;
         }
     }
     return false;

@@ -39,7 +39,7 @@ TreeNode load_any_node(uint place) {
 }
 
 BoxInterval cross_tree_box(TreeNode node) {
-    return cross_box(ray, node.lower, node.upper, world.t_min, world.t_max);
+    return cross_box(ray, node.lower, node.upper, ray_t_min, ray_t_max);
 }
 
 /// Infinity where nothing in the box is wanted.
@@ -64,7 +64,7 @@ KdBox load_kd_box(uint node) {
     TreeNode cell = load_any_node(tree.nodes + node);
     return KdBox(cell.lower, cell.first, cell.upper, cell.word);
 }
-KdRay enter_root_cell() { return make_kd_ray(ray, tree.lower, tree.upper, world.t_min, best.t); }
+KdRay enter_root_cell() { return make_kd_ray(ray, tree.lower, tree.upper, ray_t_min, best_t); }
 #else
 TreeNode load_node(uint node) { return load_any_node(tree.nodes + node); }
 float enter_box(TreeNode node) { return enter_wanted_box(node); }
@@ -139,7 +139,7 @@ bool enter_next_instance() {
         if (is_entered) {
             enter_instance(index);
             instance_entry = entry;
-            tree = load_walk_tree(1u + instance.surface);
+            tree = load_walk_tree(1u + instances[instance_index].surface);
             start_walk(find_root());
         }
     }
@@ -157,7 +157,7 @@ bool visit_leaf(uint first, uint word, uint node) {
         enter_next_instance();
         return false;
     }
-    bool has_displacement = surfaces[instance.surface].map != kNone;
+    bool has_displacement = surfaces[instances[instance_index].surface].map != kNone;
     for (uint k = 0u; k < count; ++k) {
         uint patch_index = load_word(tree.ids + first + k);
         if (has_displacement) {
@@ -167,13 +167,13 @@ bool visit_leaf(uint first, uint word, uint node) {
             intersect_polygon(patch_index);
         }
     }
-    return push.is_any != 0u && best.instance != kNone;
+    return push.is_any != 0u && has_hit;
 }
 
 bool resume_walk() {
     if (instance_index == kNone) return false;
     leave_instance();
-    instance_entry = world.t_min;
+    instance_entry = ray_t_min;
     tree = load_walk_tree(0u);
     if (enter_next_instance()) return true;
     walk_state = world_state;
@@ -187,21 +187,22 @@ void enter_tiles(uint root, float entry) {
     push_node(root, entry);
     while (stack_size > 0u) {
         --stack_size;
-        float node_entry = stack_entry[stack_size];
+        uvec2 top = stack[stack_size];
+        float node_entry = uintBitsToFloat(top.y);
         if (node_entry <= find_limit()) {
-            uint node = stack_node[stack_size];
+            uint node = top.x;
             uint first = texelFetch(nodes, 2 * int(node)).w;
             if (texelFetch(nodes, 2 * int(node) + 1).w >> kNodeKindShift == kNodeInner)
                 enter_inner(first, node_entry);
             else
-                offer_candidate(first, tile_records[first - push.patch_count].levels, node_entry);
+                offer_candidate(first, node_entry);
         }
     }
 }
 
 bool walk() {
     leave_instance();
-    instance_entry = world.t_min;
+    instance_entry = ray_t_min;
     tree = load_walk_tree(0u);
 #ifdef WALK_STACK
     stack_walk = make_empty_stack();
