@@ -34,7 +34,8 @@ vk::raii::ShaderModule make_module(const Device::Implementation& device, const s
 
 /// Points or triangles of either winding, without attachments; viewport and scissor are dynamic.
 vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, const KernelConfig& config,
-                                       const vk::PipelineShaderStageCreateInfo& fragment_stage) {
+                                       const vk::PipelineShaderStageCreateInfo& fragment_stage,
+                                       vk::PipelineCreateFlags flags) {
     const vk::raii::ShaderModule module =
         make_module(device, config.vertex_shader, find_shader(config.vertex_shader));
     const std::array stages = {
@@ -52,7 +53,7 @@ vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, con
     const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
     const vk::PipelineColorBlendStateCreateInfo no_colors;
     const vk::PipelineRenderingCreateInfo no_attachments;
-    vk::GraphicsPipelineCreateInfo info({}, stages, &no_input, &topology, nullptr, &one_viewport, &raster,
+    vk::GraphicsPipelineCreateInfo info(flags, stages, &no_input, &topology, nullptr, &one_viewport, &raster,
                                         &one_sample, nullptr, &no_colors, &dynamic_state,
                                         *device.shared->pipeline_layout);
     info.pNext = &no_attachments;
@@ -69,15 +70,15 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
                                            config.constants.size() * sizeof(uint32_t),
                                            config.constants.data());
     const bool is_drawn = !config.vertex_shader.empty();
-    // Commands launches kernels in parts on a CPU device.
-    const vk::PipelineCreateFlags flags = device.shared->description.is_cpu
-                                              ? vk::PipelineCreateFlagBits::eDispatchBase
-                                              : vk::PipelineCreateFlags();
+    // Commands launches compute kernels in parts on a CPU device.
+    vk::PipelineCreateFlags flags;
+    if (device.compiles_only()) flags |= vk::PipelineCreateFlagBits::eCaptureStatisticsKHR;
+    if (device.shared->description.is_cpu && !is_drawn) flags |= vk::PipelineCreateFlagBits::eDispatchBase;
     const vk::PipelineShaderStageCreateInfo stage(
         {}, is_drawn ? vk::ShaderStageFlagBits::eFragment : vk::ShaderStageFlagBits::eCompute, *module,
         "main", &constants);
     vk::raii::Pipeline pipeline =
-        is_drawn ? make_drawn_pipeline(device, config, stage)
+        is_drawn ? make_drawn_pipeline(device, config, stage, flags)
                  : vk::raii::Pipeline(
                        device.shared->device, device.shared->pipeline_cache,
                        vk::ComputePipelineCreateInfo(flags, stage, *device.shared->pipeline_layout));
@@ -125,6 +126,10 @@ Kernel::Kernel(const Device& device, const KernelConfig& config)
     implementation_->is_drawn = !config.vertex_shader.empty();
     check_vulkan("compiling " + config.shader,
                  [&] { implementation_->pipeline = find_pipeline(device.internals(), config, code); });
+    if (device.internals().compiles_only())
+        device.internals().shared->compiled.push_back({config.shader, config.vertex_shader,
+                                                       keep_declared(config.constants, code),
+                                                       implementation_->pipeline});
 }
 Kernel::~Kernel() = default;
 Kernel::Kernel(Kernel&&) noexcept = default;
