@@ -1,6 +1,7 @@
 #include "gpu/kernels.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <vector>
 
@@ -66,10 +67,11 @@ Value make_common_value(const KernelProgram& program, const KernelFigure& figure
     return make_value(figure);
 }
 
+/// Without those that are 0, or kNoIndex: switched off.
 Value describe_constants(const std::vector<uint32_t>& constants) {
     Value result = Value::record();
     for (uint32_t k = 0; k < constants.size(); ++k) {
-        if (constants[k] == 0) continue;
+        if (constants[k] == 0 || constants[k] == kNoIndex) continue;
         const std::string name = get_constant_name(k);
         result[name.empty() ? std::to_string(k) : name] = constants[k];
     }

@@ -312,7 +312,7 @@ void Commands::copy(const Buffer& from, uint64_t from_offset, const Buffer& to, 
     own.record("recording a copy", [&] {
         own.prepare();
         own.buffer.copyBuffer(*from.internals().buffer, *to.internals().buffer,
-                                           vk::BufferCopy(from_offset, to_offset, bytes));
+                              vk::BufferCopy(from_offset, to_offset, bytes));
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -86,16 +87,22 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
     return pipeline;
 }
 
-/// The constants with 0 in place of those that the shader does not declare, which change nothing in it
-/// (SPIR-V specification, 2.3 and 3.20).
+/// The constants as the shader sees them: those that it declares, its own values where none are given; 0 in
+/// place of others, which change nothing (SPIR-V specification, 2.3 and 3.20).
 std::vector<uint32_t> keep_declared(const std::vector<uint32_t>& constants, std::span<const uint32_t> code) {
-    constexpr uint32_t kDecorate = 71, kSpecId = 1;
+    constexpr uint32_t kDecorate = 71, kSpecId = 1, kSpecConstant = 50;
     constexpr size_t kHeaderWords = 5;
-    std::vector<uint32_t> kept(constants.size(), 0);
+    std::map<uint32_t, uint32_t> numbers; // by the result that is decorated, which comes later
+    std::vector<uint32_t> kept;
     for (size_t i = kHeaderWords; i < code.size();) {
         const uint32_t operation = code[i] & 0xffff, words = code[i] >> 16;
-        if (operation == kDecorate && words == 4 && code[i + 2] == kSpecId && code[i + 3] < kept.size())
-            kept[code[i + 3]] = constants[code[i + 3]];
+        if (operation == kDecorate && words == 4 && code[i + 2] == kSpecId)
+            numbers[code[i + 1]] = code[i + 3];
+        if (operation == kSpecConstant && words == 4 && numbers.contains(code[i + 2])) {
+            const uint32_t number = numbers[code[i + 2]];
+            kept.resize(std::max<size_t>(kept.size(), number + 1), 0);
+            kept[number] = number < constants.size() ? constants[number] : code[i + 3];
+        }
         i += std::max(words, 1u);
     }
     return kept;

@@ -25,7 +25,7 @@ struct KernelProgram {
 
 struct KernelStatistics {
     std::string shader, vertex_shader; ///< as in KernelConfig
-    std::vector<uint32_t> constants;   ///< those that the shader declares; others 0
+    std::vector<uint32_t> constants;   ///< those that the shader declares, given or its own; others 0
     std::vector<KernelProgram> programs;
 };
 

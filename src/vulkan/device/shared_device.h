@@ -16,7 +16,7 @@
 
 namespace relief::vulkan {
 
-/// A kernel that was made, by the constants that its shader declares.
+/// A kernel that was made, with the constants as its shader sees them.
 struct CompiledKernel {
     std::string shader, vertex_shader;
     std::vector<uint32_t> constants;
