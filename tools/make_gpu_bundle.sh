@@ -52,9 +52,17 @@ done
 loader=$(find_library libvulkan.so.1)
 [ -n "$loader" ] || { echo "make_gpu_bundle.sh: there is no libvulkan.so.1 (package libvulkan1)" >&2 && exit 1; }
 cp -L "$loader" "$bundle/fallback/"
-for name in libX11.so.6 libXext.so.6 libxcb.so.1 libXau.so.6 libXdmcp.so.6 libbsd.so.0 libmd.so.0 libGLdispatch.so.0; do
+for name in libX11.so.6 libXext.so.6 libxcb.so.1 libXau.so.6 libXdmcp.so.6 libbsd.so.0 libmd.so.0; do
     library=$(find_library $name)
     [ -z "$library" ] || cp -L "$library" "$bundle/fallback/"
+done
+# All of libglvnd: newer drivers of NVIDIA load libEGL.so.1 while they answer the Vulkan loader, which otherwise finds no
+# device, and libEGL.so.1 comes with its siblings.
+for pair in libEGL.so.1:libegl1 libGLX.so.0:libglx0 libGL.so.1:libgl1 libOpenGL.so.0:libopengl0 libGLESv2.so.2:libgles2 \
+    libGLdispatch.so.0:libglvnd0; do
+    library=$(find_library "${pair%:*}")
+    [ -n "$library" ] || { echo "make_gpu_bundle.sh: there is no ${pair%:*} (package ${pair#*:})" >&2 && exit 1; }
+    cp -L "$library" "$bundle/fallback/"
 done
 
 # Validation: the tests fail without it.

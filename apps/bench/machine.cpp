@@ -30,7 +30,7 @@ std::string read_processor() {
 } // namespace
 
 Value describe_build() {
-    return {{"version", RELIEF_VERSION_STRING}, {"commit", RELIEF_COMMIT}, {"compiler", __VERSION__}};
+    return {{"version", RELIEF_VERSION_STRING}, {"commit", kCommit}, {"compiler", __VERSION__}};
 }
 
 Value describe_machine() {

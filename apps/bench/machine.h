@@ -6,7 +6,10 @@
 
 namespace relief::bench {
 
-/// {version, commit, compiler} of this build; commit as of its configuration, "unknown" outside git.
+/// Of the sources when this was built, as `git describe --always --dirty` has it; "unknown" outside git.
+extern const char* const kCommit;
+
+/// {version, commit, compiler} of this build.
 Value describe_build();
 
 /// {system, processor, threads} of this machine.

@@ -13,6 +13,7 @@
 #include "bench/machine.h"
 #include "bench/paper1.h"
 #include "bench/tables.h"
+#include "gpu/kernels.h"
 #include "gpu/parity.h"
 #include "relief/error.h"
 
@@ -24,6 +25,7 @@ struct Options {
     std::filesystem::path pipeline_cache;
     int device = -1;
     bool is_quick = false;
+    bool is_json = false;
     std::vector<std::string> scenes; ///< empty: all
     std::string only;                ///< substring of case names
     std::vector<int> size;           ///< pixels; empty: the default
@@ -89,6 +91,16 @@ int run_bench_verb(const Options& options) {
     return 0;
 }
 
+int run_kernels_verb(const Options& options) {
+    Value result = {{"build", bench::describe_build()}};
+    result.update(list_kernels(make_settings(options), report));
+    if (!options.output.empty())
+        write_text(options.output, write_json(result, 1));
+    else
+        fmt::print("{}", options.is_json ? write_json(result, 1) : print_kernels(result));
+    return result["kernels"].size() > 0 ? 0 : 1;
+}
+
 int run_devices_verb() {
     const Value devices = bench::describe_vulkan_devices();
     fmt::print("{}", write_json(devices, 1));
@@ -122,6 +134,10 @@ int run(int argument_count, char** arguments) {
         ->add_option("--tessellated-limit", options.tessellated_limit_mebibytes,
                      "MiB: pre-tessellated scenes above are left out; default 4096")
         ->check(CLI::Range(0, 1 << 30));
+    CLI::App* kernels = app.add_subcommand("kernels", "What the driver tells of all compiled kernels");
+    kernels->add_option("-o", options.output, "JSON file; default: a table on the terminal");
+    kernels->add_option("--device", options.device, "index of the device; default: the best one");
+    kernels->add_flag("--json", options.is_json, "JSON on the terminal");
     CLI::App* devices = app.add_subcommand("devices", "List the Vulkan devices as JSON");
     try {
         app.parse(argument_count, arguments);
@@ -129,6 +145,7 @@ int run(int argument_count, char** arguments) {
         return app.exit(error) == 0 ? 0 : int(ErrorKind::usage);
     }
     if (devices->parsed()) return run_devices_verb();
+    if (kernels->parsed()) return run_kernels_verb(options);
     return parity->parsed() ? run_parity_verb(options) : run_bench_verb(options);
 }
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Tests, parity and measurements of the Vulkan engine on this machine. Needs a Vulkan driver and gzip, nothing else.
-#   run.sh [-o RESULT.json] [--parts tests,parity,bench] [--device N] [--quick] [--parity WORDS] [--bench WORDS]
+#   run.sh [-o RESULT.json] [--parts tests,kernels,parity,bench] [--device N] [--quick] [--parity WORDS] [--bench WORDS]
 # WORDS are more options of `relief-gpu parity` or `relief-gpu bench`, e.g. --bench "--scenes bark,party --runs 7".
 # RESULT.json (default relief-gpu.json here) tells each part's outcome; logs lie in a folder beside it.
 # Exit code: 0 when every part asked for passed, 1 otherwise, 2 for wrong usage.
@@ -8,7 +8,7 @@ set -u
 
 here=$(cd "$(dirname "$0")" && pwd)
 result=relief-gpu.json
-parts=tests,parity,bench
+parts=tests,kernels,parity,bench
 device=
 quick=
 parity_words=
@@ -29,8 +29,8 @@ while [ $# -gt 0 ]; do
 done
 for part in $(echo "$parts" | tr , ' '); do
     case $part in
-    tests | parity | bench) ;;
-    *) echo "run.sh: unknown part '$part': tests, parity, bench" >&2 && exit 2 ;;
+    tests | kernels | parity | bench) ;;
+    *) echo "run.sh: unknown part '$part': tests, kernels, parity, bench" >&2 && exit 2 ;;
     esac
 done
 
@@ -90,6 +90,7 @@ for part in $(echo "$parts" | tr , ' '); do
     # $device, $quick and the further words are split into words, or nothing.
     case $part in
     tests) run_part tests tests.json "$logs/bin/vulkan_tests" --gtest_output=json:tests.json ;;
+    kernels) run_part kernels kernels.json "$logs/bin/relief-gpu" kernels -o kernels.json $device ;;
     parity) run_part parity parity.json "$logs/bin/relief-gpu" parity -o parity.json --pipeline-cache pipelines \
         $device $quick $parity_words ;;
     bench) run_part bench paper1/paper1.json "$logs/bin/relief-gpu" bench -o paper1 --pipeline-cache pipelines \

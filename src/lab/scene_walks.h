@@ -19,6 +19,9 @@ std::unique_ptr<const cpu::SceneWalk> make_scene_walk(const PreparedScene& scene
 #ifdef RELIEF_VULKAN
 namespace vulkan {
 
+/// Walks trees of up to `depth` levels in that way.
+TraversalKernel find_walk_kernel(TraversalKind traversal, int depth);
+
 /// Empty where the settings name the engine's own traversal.
 std::optional<SceneWalk> make_device_walk(const PreparedScene& scene, const RenderSettings& settings);
 

@@ -21,6 +21,9 @@ with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     bundle = folder / "bundle"
     subprocess.run([source / "tools/make_gpu_bundle.sh", build, bundle], check=True)
+    # Drivers of NVIDIA load these.
+    for library in ["EGL.so.1", "GLX.so.0", "GL.so.1", "OpenGL.so.0", "GLESv2.so.2", "GLdispatch.so.0"]:
+        assert (bundle / "fallback" / f"lib{library}").is_file(), library
     (folder / "elsewhere").mkdir()
     done = run(bundle, folder / "elsewhere", "--parts", "tests", "-o", "result.json")
     assert done.returncode == 0, done.stderr
@@ -30,6 +33,13 @@ with tempfile.TemporaryDirectory() as name:
     assert result["devices"][0]["driver"], result["devices"]
     tests = result["parts"]["tests"]
     assert tests["outcome"] == "passed" and tests["exit_code"] == 0 and tests["result"]["tests"] > 0, tests
+    # Drivers tell of kernels or say that they do not.
+    run(bundle, folder, "--parts", "kernels")
+    kernels = json.loads((folder / "relief-gpu.json").read_text())["parts"]["kernels"]
+    if kernels["exit_code"] == 0:
+        assert kernels["result"]["kernels"], kernels
+    else:
+        assert kernels["exit_code"] == 4 and kernels["result"] is None, kernels
     assert run(bundle, folder, "--parts", "nonsense").returncode == 2
     assert run(bundle, folder, "--nonsense").returncode == 2
 

@@ -43,11 +43,16 @@ PACKAGES = {
     "Vulkan": ["libvulkan-dev", "mesa-vulkan-drivers", "vulkan-validationlayers"],
 }
 TOOLS = ["clang", "lld", "llvm", "clang-format", "libclang-rt-14-dev", "cmake", "ninja-build", "make", "glslc", "doxygen", "python3-matplotlib", "xvfb"]
+# Libraries that tools/make_gpu_bundle.sh packs for a driver, as it pairs them with their packages.
+BUNDLED = r"lib\w+\.so\.\d+:(\w+)"
 
 root = pathlib.Path(sys.argv[1])
 listed = set((root / "tools/packages.txt").read_text().splitlines())
 needed = {tool: "the presets and the Makefile" for tool in TOOLS}
-faults = []
+bundle = root / "tools/make_gpu_bundle.sh"
+bundled = re.findall(BUNDLED, bundle.read_text())
+needed.update({package: bundle for package in bundled})
+faults = [] if bundled else [f"{bundle} pairs no library with a package: is the expression right?"]
 for file in list_files(root):
     if file.name == "CMakeLists.txt" or file.suffix == ".cmake":
         for name in re.findall(r"find_(?:package|library|path)\(\s*(\w+)", file.read_text()):

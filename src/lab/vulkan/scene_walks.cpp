@@ -67,6 +67,11 @@ WalkTreeData append_tree(const WalkTree& tree, TraversalKind traversal, std::vec
 
 } // namespace
 
+TraversalKernel find_walk_kernel(TraversalKind traversal, int depth) {
+    const std::string shader = name_walk("scene_walk", traversal, depth);
+    return {shader, lab::find_shader(shader), lab::find_shader(shader + "_fragment")};
+}
+
 std::optional<SceneWalk> make_device_walk(const PreparedScene& scene, const RenderSettings& settings) {
     if (is_default_traversal(settings, EngineKind::vulkan)) return {};
     const WalkTrees trees = make_walk_trees(scene, settings, EngineKind::vulkan);
@@ -80,8 +85,7 @@ std::optional<SceneWalk> make_device_walk(const PreparedScene& scene, const Rend
     records[0] = append_tree(trees.instances, trees.traversal, walk.nodes, walk.words);
     walk.has_instances = !trees.instances.bounds.is_empty();
     std::memcpy(walk.words.data(), records.data(), records.size() * sizeof(WalkTreeData));
-    const std::string shader = name_walk("scene_walk", trees.traversal, trees.depth);
-    walk.kernel = {shader, lab::find_shader(shader), lab::find_shader(shader + "_fragment")};
+    walk.kernel = find_walk_kernel(trees.traversal, trees.depth);
     return walk;
 }
 

@@ -41,8 +41,10 @@ class TreeTracer {
     /// Of the last trace, without uploads.
     double seconds() const { return seconds_; }
 
-  private:
+    /// That for trees of this form and depth; compiled when first asked for.
     const Kernel& find_kernel(const DeviceTree& tree, const TreeQuery& query);
+
+  private:
     void bind(const DeviceTree& tree, const DeviceMesh& mesh, const TreeRays& rays);
 
     const Device& device_;

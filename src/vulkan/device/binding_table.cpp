@@ -41,6 +41,7 @@ TexelFormat find_format(uint32_t binding) {
 
 void write_binding(const BindingTable::Implementation& table, uint32_t binding,
                    const Buffer::Implementation& buffer) {
+    if (buffer.holds_nothing()) return;
     const vk::DescriptorBufferInfo range(*buffer.buffer, 0, VK_WHOLE_SIZE);
     const vk::BufferView texels = *buffer.texels;
     vk::WriteDescriptorSet write(*table.set, binding, 0, 1, vk::DescriptorType::eStorageBuffer, nullptr,

@@ -66,6 +66,7 @@ uint32_t texel_bytes(TexelFormat format) { return find_texel(format).bytes; }
 Buffer::Implementation::Implementation(Device::Implementation& owner, const BufferConfig& wanted)
     : device(owner), config(wanted) {
     check_size(device, config);
+    if (device.compiles_only()) return;
     check_vulkan(config.name, [&] {
         buffer = vk::raii::Buffer(device.shared->device,
                                   vk::BufferCreateInfo({}, round_up(config.bytes), choose_usage(config)));
@@ -88,6 +89,7 @@ Buffer::Implementation::Implementation(Device::Implementation& owner, const Buff
 }
 
 Buffer::Implementation::~Implementation() {
+    if (holds_nothing()) return;
     texels.clear();
     buffer.clear();
     device.memory->release(memory);
@@ -105,8 +107,8 @@ uint64_t Buffer::byte_count() const { return implementation_ ? implementation_->
 
 void Buffer::upload(std::span<const std::byte> data, uint64_t offset) {
     DCHECK(offset + data.size() <= byte_count());
-    if (data.empty()) return;
     Implementation& own = *implementation_;
+    if (data.empty() || own.holds_nothing()) return;
     if (is_direct(own)) {
         std::memcpy(own.memory.mapped() + offset, data.data(), data.size());
         return;
@@ -124,8 +126,8 @@ void Buffer::upload(std::span<const std::byte> data, uint64_t offset) {
 
 void Buffer::download(std::span<std::byte> data, uint64_t offset) const {
     DCHECK(offset + data.size() <= byte_count());
-    if (data.empty()) return;
     const Implementation& own = *implementation_;
+    if (data.empty() || own.holds_nothing()) return;
     if (is_direct(own)) {
         std::memcpy(data.data(), own.memory.mapped() + offset, data.size());
         return;
@@ -142,7 +144,7 @@ void Buffer::download(std::span<std::byte> data, uint64_t offset) const {
 }
 
 void* Buffer::mapped() const {
-    DCHECK(implementation_->config.is_host_visible);
+    DCHECK(implementation_->config.is_host_visible && !implementation_->holds_nothing());
     return implementation_->memory.mapped();
 }
 

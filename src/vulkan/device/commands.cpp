@@ -71,6 +71,10 @@ struct Commands::Implementation {
     std::array<double, kStageCount> seconds{};
     uint64_t dispatch_count = 0;
 
+    /// `command` writes to the buffer; dropped on a device that compiles only.
+    template <class Command> void record(const char* what, const Command& command) {
+        if (!device.compiles_only()) check_vulkan(what, command);
+    }
     void start();
     void mark(std::optional<Stage> next);
     void prepare();
@@ -223,7 +227,7 @@ void Commands::Implementation::run() {
 Commands::Commands(const Device& device, const BindingTable& bindings)
     : implementation_(new Implementation{device.internals(), bindings.internals()}) {
     Implementation& own = *implementation_;
-    check_vulkan("making a command buffer", [&] {
+    own.record("making a command buffer", [&] {
         const vk::raii::Device& handle = own.device.shared->device;
         own.pool = vk::raii::CommandPool(
             handle, {vk::CommandPoolCreateFlagBits::eTransient, own.device.shared->family});
@@ -248,7 +252,7 @@ void Commands::dispatch_bytes(const Kernel& kernel, uint64_t invocations, std::s
     if (invocations == 0) return;
     Implementation& own = *implementation_;
     const uint64_t groups = (invocations + kernel.group_size() - 1) / kernel.group_size();
-    check_vulkan("recording a dispatch", [&] { own.launch(kernel, groups, push); });
+    own.record("recording a dispatch", [&] { own.launch(kernel, groups, push); });
 }
 
 void Commands::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, uint64_t offset,
@@ -262,7 +266,7 @@ void Commands::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& argum
         return dispatch_bytes(kernel, uint64_t(groups[0]) * groups[1] * groups[2] * kernel.group_size(),
                               push);
     }
-    check_vulkan("recording a dispatch", [&] {
+    own.record("recording a dispatch", [&] {
         own.prepare();
         own.bind_kernel(kernel, push);
         if (!kernel.is_drawn()) {
@@ -281,7 +285,7 @@ void Commands::draw_bytes(const Kernel& kernel, DrawSize size, uint32_t vertex_c
     if (vertex_count == 0) return;
     Implementation& own = *implementation_;
     DCHECK(kernel.is_drawn() && size.width > 0 && size.height > 0);
-    check_vulkan("recording a draw", [&] {
+    own.record("recording a draw", [&] {
         own.prepare();
         own.bind_kernel(kernel, push);
         own.begin_drawing(size);
@@ -293,9 +297,10 @@ void Commands::draw_bytes(const Kernel& kernel, DrawSize size, uint32_t vertex_c
 void Commands::fill(const Buffer& buffer, uint64_t offset, uint64_t bytes, uint32_t value) {
     DCHECK(offset % 4 == 0 && bytes % 4 == 0 && offset + bytes <= buffer.byte_count());
     if (bytes == 0) return;
-    check_vulkan("recording a fill", [&] {
-        implementation_->prepare();
-        implementation_->buffer.fillBuffer(*buffer.internals().buffer, offset, bytes, value);
+    Implementation& own = *implementation_;
+    own.record("recording a fill", [&] {
+        own.prepare();
+        own.buffer.fillBuffer(*buffer.internals().buffer, offset, bytes, value);
     });
 }
 
@@ -303,10 +308,11 @@ void Commands::copy(const Buffer& from, uint64_t from_offset, const Buffer& to, 
                     uint64_t bytes) {
     DCHECK(from_offset + bytes <= from.byte_count() && to_offset + bytes <= to.byte_count());
     if (bytes == 0) return;
-    check_vulkan("recording a copy", [&] {
-        implementation_->prepare();
-        implementation_->buffer.copyBuffer(*from.internals().buffer, *to.internals().buffer,
-                                           vk::BufferCopy(from_offset, to_offset, bytes));
+    Implementation& own = *implementation_;
+    own.record("recording a copy", [&] {
+        own.prepare();
+        own.buffer.copyBuffer(*from.internals().buffer, *to.internals().buffer,
+                              vk::BufferCopy(from_offset, to_offset, bytes));
     });
 }
 

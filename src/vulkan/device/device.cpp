@@ -19,6 +19,7 @@ constexpr std::chrono::milliseconds kLongestSpin{2};
 
 Device::Implementation::Implementation(const Config& config)
     : shared(share_device(config)), is_staged(config.is_staged) {
+    if (config.compiles_only) return;
     check_vulkan("making the device", [&] {
         const vk::raii::Device& device = shared->device;
         pool = vk::raii::CommandPool(device, {vk::CommandPoolCreateFlagBits::eTransient, shared->family});
@@ -100,11 +101,15 @@ uint32_t Device::max_draw_size() const {
     return std::min({limits.maxFramebufferWidth, limits.maxFramebufferHeight, limits.maxViewportDimensions[0],
                      limits.maxViewportDimensions[1]});
 }
-uint64_t Device::available_bytes() const { return implementation_->memory->available_bytes(); }
-uint64_t Device::allocated_bytes(Purpose purpose) const {
-    return implementation_->memory->allocated_bytes(purpose);
+uint64_t Device::available_bytes() const {
+    return implementation_->memory ? implementation_->memory->available_bytes() : max_buffer_bytes();
 }
-uint64_t Device::peak_bytes(Purpose purpose) const { return implementation_->memory->peak_bytes(purpose); }
+uint64_t Device::allocated_bytes(Purpose purpose) const {
+    return implementation_->memory ? implementation_->memory->allocated_bytes(purpose) : 0;
+}
+uint64_t Device::peak_bytes(Purpose purpose) const {
+    return implementation_->memory ? implementation_->memory->peak_bytes(purpose) : 0;
+}
 
 std::vector<std::string> Device::validation_messages() const {
     const MessageLog* messages = implementation_->shared->messages.get();

@@ -43,6 +43,10 @@ class Device {
         bool is_staged = false;
         /// Uses the logical device and the pipelines of earlier Devices of this process; see shared_device.h.
         bool is_shared = true;
+        /// Compiles kernels, with statistics (kernel_statistics.h), and does nothing else: its buffers hold
+        /// nothing, and commands are dropped. A driver without a device will do. Requires
+        /// VK_KHR_pipeline_executable_properties.
+        bool compiles_only = false;
     };
 
     /// Throws Error{device_missing}: no driver, no such index, or missing features, which it names.

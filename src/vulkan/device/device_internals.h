@@ -24,6 +24,7 @@ struct Device::Implementation {
     template <class Handle> void set_name(const Handle& handle, const std::string& name) const {
         shared->set_name(handle, name);
     }
+    bool compiles_only() const { return shared->config.compiles_only; }
     /// Submits a recorded command buffer and waits. `describe` names its contents if the device is lost.
     void submit_and_wait(const vk::raii::CommandBuffer& commands,
                          const std::function<std::string()>& describe);
@@ -41,7 +42,7 @@ struct Device::Implementation {
     bool is_staged = false;
     vk::raii::CommandPool pool = nullptr;
     vk::raii::Fence fence = nullptr;
-    std::unique_ptr<MemoryAllocator> memory;
+    std::unique_ptr<MemoryAllocator> memory; ///< null where the device compiles only
     std::unique_ptr<Buffer::Implementation> staging_buffer;
     std::function<bool()> is_stop_asked_for; ///< empty: never
 };
@@ -49,6 +50,8 @@ struct Device::Implementation {
 struct Buffer::Implementation {
     Implementation(Device::Implementation& device, const BufferConfig& config);
     ~Implementation();
+
+    bool holds_nothing() const { return !*buffer; } ///< on a device that compiles only
 
     Device::Implementation& device;
     BufferConfig config;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -34,7 +35,8 @@ vk::raii::ShaderModule make_module(const Device::Implementation& device, const s
 
 /// Points or triangles of either winding, without attachments; viewport and scissor are dynamic.
 vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, const KernelConfig& config,
-                                       const vk::PipelineShaderStageCreateInfo& fragment_stage) {
+                                       const vk::PipelineShaderStageCreateInfo& fragment_stage,
+                                       vk::PipelineCreateFlags flags) {
     const vk::raii::ShaderModule module =
         make_module(device, config.vertex_shader, find_shader(config.vertex_shader));
     const std::array stages = {
@@ -52,7 +54,7 @@ vk::raii::Pipeline make_drawn_pipeline(const Device::Implementation& device, con
     const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
     const vk::PipelineColorBlendStateCreateInfo no_colors;
     const vk::PipelineRenderingCreateInfo no_attachments;
-    vk::GraphicsPipelineCreateInfo info({}, stages, &no_input, &topology, nullptr, &one_viewport, &raster,
+    vk::GraphicsPipelineCreateInfo info(flags, stages, &no_input, &topology, nullptr, &one_viewport, &raster,
                                         &one_sample, nullptr, &no_colors, &dynamic_state,
                                         *device.shared->pipeline_layout);
     info.pNext = &no_attachments;
@@ -69,15 +71,15 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
                                            config.constants.size() * sizeof(uint32_t),
                                            config.constants.data());
     const bool is_drawn = !config.vertex_shader.empty();
-    // Commands launches kernels in parts on a CPU device.
-    const vk::PipelineCreateFlags flags = device.shared->description.is_cpu
-                                              ? vk::PipelineCreateFlagBits::eDispatchBase
-                                              : vk::PipelineCreateFlags();
+    // Commands launches compute kernels in parts on a CPU device.
+    vk::PipelineCreateFlags flags;
+    if (device.compiles_only()) flags |= vk::PipelineCreateFlagBits::eCaptureStatisticsKHR;
+    if (device.shared->description.is_cpu && !is_drawn) flags |= vk::PipelineCreateFlagBits::eDispatchBase;
     const vk::PipelineShaderStageCreateInfo stage(
         {}, is_drawn ? vk::ShaderStageFlagBits::eFragment : vk::ShaderStageFlagBits::eCompute, *module,
         "main", &constants);
     vk::raii::Pipeline pipeline =
-        is_drawn ? make_drawn_pipeline(device, config, stage)
+        is_drawn ? make_drawn_pipeline(device, config, stage, flags)
                  : vk::raii::Pipeline(
                        device.shared->device, device.shared->pipeline_cache,
                        vk::ComputePipelineCreateInfo(flags, stage, *device.shared->pipeline_layout));
@@ -85,16 +87,22 @@ vk::raii::Pipeline make_pipeline(const Device::Implementation& device, const Ker
     return pipeline;
 }
 
-/// The constants with 0 in place of those that the shader does not declare, which change nothing in it
-/// (SPIR-V specification, 2.3 and 3.20).
+/// The constants as the shader sees them: those that it declares, its own values where none are given; 0 in
+/// place of others, which change nothing (SPIR-V specification, 2.3 and 3.20).
 std::vector<uint32_t> keep_declared(const std::vector<uint32_t>& constants, std::span<const uint32_t> code) {
-    constexpr uint32_t kDecorate = 71, kSpecId = 1;
+    constexpr uint32_t kDecorate = 71, kSpecId = 1, kSpecConstant = 50;
     constexpr size_t kHeaderWords = 5;
-    std::vector<uint32_t> kept(constants.size(), 0);
+    std::map<uint32_t, uint32_t> numbers; // by the result that is decorated, which comes later
+    std::vector<uint32_t> kept;
     for (size_t i = kHeaderWords; i < code.size();) {
         const uint32_t operation = code[i] & 0xffff, words = code[i] >> 16;
-        if (operation == kDecorate && words == 4 && code[i + 2] == kSpecId && code[i + 3] < kept.size())
-            kept[code[i + 3]] = constants[code[i + 3]];
+        if (operation == kDecorate && words == 4 && code[i + 2] == kSpecId)
+            numbers[code[i + 1]] = code[i + 3];
+        if (operation == kSpecConstant && words == 4 && numbers.contains(code[i + 2])) {
+            const uint32_t number = numbers[code[i + 2]];
+            kept.resize(std::max<size_t>(kept.size(), number + 1), 0);
+            kept[number] = number < constants.size() ? constants[number] : code[i + 3];
+        }
         i += std::max(words, 1u);
     }
     return kept;
@@ -125,6 +133,10 @@ Kernel::Kernel(const Device& device, const KernelConfig& config)
     implementation_->is_drawn = !config.vertex_shader.empty();
     check_vulkan("compiling " + config.shader,
                  [&] { implementation_->pipeline = find_pipeline(device.internals(), config, code); });
+    if (device.internals().compiles_only())
+        device.internals().shared->compiled.push_back({config.shader, config.vertex_shader,
+                                                       keep_declared(config.constants, code),
+                                                       implementation_->pipeline});
 }
 Kernel::~Kernel() = default;
 Kernel::Kernel(Kernel&&) noexcept = default;

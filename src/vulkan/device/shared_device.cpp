@@ -93,6 +93,19 @@ uint32_t count_resident_groups(const vk::raii::PhysicalDevice& device, bool is_c
     return kUnitsOfALargeGpu * kGroupsPerUnit;
 }
 
+void require_statistics(const vk::raii::PhysicalDevice& device, const DeviceDescription& description) {
+    if (has_extension(device, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) {
+        const auto chain = device.getFeatures2<vk::PhysicalDeviceFeatures2,
+                                               vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR>();
+        if (chain.get<vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR>().pipelineExecutableInfo)
+            return;
+    }
+    refuse_device(fmt::format("device {} ({}) tells nothing of compiled kernels: its driver lacks {}",
+                              description.index, description.name,
+                              VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME),
+                  "choose another with device.index, or Mesa's RADV without a device: docs/gpu.md");
+}
+
 void read_limits(SharedDevice& d) {
     const auto chain =
         d.physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
@@ -129,6 +142,11 @@ vk::raii::Device make_device(const SharedDevice& d) {
     const std::array priority = {1.0f};
     const vk::DeviceQueueCreateInfo queue({}, d.family, priority);
     std::vector<const char*> extensions;
+    vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR with_statistics(true);
+    if (d.config.compiles_only) {
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        with_13.pNext = &with_statistics;
+    }
     if (has_extension(d.physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME))
         extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     return {d.physical, vk::DeviceCreateInfo({}, queue, {}, extensions, nullptr, &features)};
@@ -171,6 +189,7 @@ SharedDevice::SharedDevice(const Device::Config& wanted)
       instance(make_instance(messages.get())) {
     check_vulkan("making the device", [&] {
         physical = choose_device(instance.handle, config, description);
+        if (config.compiles_only) require_statistics(physical, description);
         read_limits(*this);
         device = make_device(*this);
         set_name(device, "relief device");
@@ -192,13 +211,13 @@ void SharedDevice::save_pipelines() {
 
 std::shared_ptr<SharedDevice> share_device(const Device::Config& config) {
     if (!config.is_shared) return std::make_shared<SharedDevice>(config);
-    using Key = std::tuple<int, RenderMethod, std::filesystem::path, bool>;
+    using Key = std::tuple<int, RenderMethod, std::filesystem::path, bool, bool>;
     static std::mutex mutex;
     // Never destroyed: drivers and layers, loaded later, have their own static objects destroyed before.
     static auto& devices = *new std::map<Key, std::shared_ptr<SharedDevice>>;
     const std::lock_guard lock(mutex);
-    std::shared_ptr<SharedDevice>& place =
-        devices[{config.index, config.method, config.pipeline_cache, config.is_validated}];
+    std::shared_ptr<SharedDevice>& place = devices[{config.index, config.method, config.pipeline_cache,
+                                                    config.is_validated, config.compiles_only}];
     if (!place || place->is_lost) place = std::make_shared<SharedDevice>(config);
     return place;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include <vulkan/vulkan_raii.hpp>
 
@@ -14,6 +15,13 @@
 #include "vulkan/device/pipeline_store.h"
 
 namespace relief::vulkan {
+
+/// A kernel that was made, with the constants as its shader sees them.
+struct CompiledKernel {
+    std::string shader, vertex_shader;
+    std::vector<uint32_t> constants;
+    std::shared_ptr<const vk::raii::Pipeline> pipeline;
+};
 
 /// A logical device with its queue, layouts and pipelines. Immutable but for the pipelines; `queue` is used
 /// under `queue_mutex`.
@@ -53,6 +61,7 @@ struct SharedDevice {
     vk::raii::DescriptorSetLayout set_layout = nullptr;
     vk::raii::PipelineLayout pipeline_layout = nullptr;
     PipelineStore<vk::raii::Pipeline> pipelines;
+    std::vector<CompiledKernel> compiled; ///< of a device that compiles only: kernels not reported yet
 };
 
 /// The device of this configuration that the process has already, or a new one: without Config::is_shared,

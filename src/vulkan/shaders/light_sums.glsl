@@ -10,8 +10,8 @@
 
 layout(constant_id = kLightKindsConstant) const uint kLightKinds = 0u;
 layout(constant_id = kLightGroupsConstant) const uint kLightGroups = 0u;
-layout(constant_id = kDefaultGroupConstant) const uint kDefaultGroup = 0xffffffffu;
-layout(constant_id = kEnvironmentGroupConstant) const uint kEnvironmentGroup = 0xffffffffu;
+layout(constant_id = kDefaultGroupConstant) const uint kDefaultGroup = 0u; ///< only with groups; so is the next
+layout(constant_id = kEnvironmentGroupConstant) const uint kEnvironmentGroup = 0u;
 layout(constant_id = kGuidesConstant) const uint kHasGuides = 0u;
 layout(scalar, set = 0, binding = kBindFilm) buffer LightSums { uint light_words[]; };
 
