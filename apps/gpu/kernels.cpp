@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "lab/kernel_report.h"
 #include "relief/error.h"
 
 namespace relief::gpu {
@@ -68,22 +68,24 @@ Value make_common_value(const KernelProgram& program, const KernelFigure& figure
 }
 
 /// Without those that are 0, or kNoIndex: switched off.
-Value describe_constants(const std::vector<uint32_t>& constants) {
+Value describe_constants(const std::vector<uint32_t>& constants,
+                         const std::map<uint32_t, std::string>& names) {
     Value result = Value::record();
     for (uint32_t k = 0; k < constants.size(); ++k) {
         if (constants[k] == 0 || constants[k] == kNoIndex) continue;
-        const std::string name = get_constant_name(k);
-        result[name.empty() ? std::to_string(k) : name] = constants[k];
+        const auto name = names.find(k);
+        result[name == names.end() ? std::to_string(k) : name->second] = constants[k];
     }
     return result;
 }
 
-Value describe_program(const ReportedKernel& kernel, const KernelProgram& program) {
+Value describe_program(const KernelReport& report, const ReportedKernel& kernel,
+                       const KernelProgram& program) {
     Value row = {{"kernel", kernel.statistics.shader}};
     if (!kernel.statistics.vertex_shader.empty()) row["vertex_shader"] = kernel.statistics.vertex_shader;
     row["program"] = program.name;
     row["cases"] = Value(kernel.cases);
-    row["constants"] = describe_constants(kernel.statistics.constants);
+    row["constants"] = describe_constants(kernel.statistics.constants, report.constant_names);
     row["subgroup_size"] = program.subgroup_size;
     for (const CommonFigure& common : get_common_figures())
         if (const KernelFigure* figure = find_figure(program, common))
@@ -91,17 +93,6 @@ Value describe_program(const ReportedKernel& kernel, const KernelProgram& progra
     row["reported"] = Value::record();
     for (const KernelFigure& figure : program.figures) row["reported"][figure.name] = make_value(figure);
     return row;
-}
-
-KernelReport make_report(const RenderSettings& settings,
-                         const std::function<void(const std::string&)>& on_case) {
-#ifdef RELIEF_VULKAN
-    return report_kernels(settings, on_case);
-#else
-    static_cast<void>(settings), static_cast<void>(on_case);
-    throw Error(ErrorKind::device_missing,
-                {"this build has no Vulkan", "kernels", "configure it with -DRELIEF_VULKAN=ON"});
-#endif
 }
 
 /// The first case of a row, and how many more there are.
@@ -120,20 +111,29 @@ std::string describe_name(const Value& row) {
 
 } // namespace
 
-Value list_kernels(const RenderSettings& settings, const std::function<void(const std::string&)>& on_case) {
-    const KernelReport report = make_report(settings, on_case);
+Value describe_kernels(const KernelReport& report) {
     Value cases = Value::record(), figures = Value::record(), kernels = Value::list();
     for (const KernelCase& each : report.cases) cases[each.name] = each.meaning;
     for (const ReportedKernel& kernel : report.kernels)
         for (const KernelProgram& program : kernel.statistics.programs) {
             for (const KernelFigure& figure : program.figures) figures[figure.name] = figure.description;
-            kernels.push_back(describe_program(kernel, program));
+            kernels.push_back(describe_program(report, kernel, program));
         }
     return {{"device", report.device},
             {"driver", report.driver},
             {"cases", std::move(cases)},
             {"figures", std::move(figures)},
             {"kernels", std::move(kernels)}};
+}
+
+Value list_kernels(const RenderSettings& settings, const std::function<void(const std::string&)>& on_case) {
+#ifdef RELIEF_VULKAN
+    return describe_kernels(report_kernels(settings, on_case));
+#else
+    static_cast<void>(settings), static_cast<void>(on_case);
+    throw Error(ErrorKind::device_missing,
+                {"this build has no Vulkan", "kernels", "configure it with -DRELIEF_VULKAN=ON"});
+#endif
 }
 
 std::string print_kernels(const Value& list) {

@@ -2,7 +2,9 @@
 // latency. Kernels are compiled and not run; a driver without a device will do.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,8 @@ struct ReportedKernel {
 
 struct KernelReport {
     std::string device, driver;
+    /// Of constants by number; those that differ in meaning from kernel to kernel have none.
+    std::map<uint32_t, std::string> constant_names;
     std::vector<KernelCase> cases;
     std::vector<ReportedKernel> kernels; ///< in the order in which the engine makes them
 };
@@ -31,8 +35,5 @@ struct KernelReport {
 /// Throws Error{device_missing} where the device or its driver's statistics are missing.
 KernelReport report_kernels(const RenderSettings& settings,
                             const std::function<void(const std::string&)>& on_case);
-
-/// Names of constants by number; empty for those that differ in meaning from kernel to kernel.
-std::string get_constant_name(uint32_t number);
 
 } // namespace relief

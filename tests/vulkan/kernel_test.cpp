@@ -1,6 +1,8 @@
 // Pipelines are compiled once for a device.
 #include <memory>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +40,20 @@ TEST_F(Kernels, differ_by_the_constants_that_the_shader_declares_alone) {
         return Kernel(device(), {.shader = "sort_count", .constants = {scalar::kSortGroupSize, unknown}});
     };
     EXPECT_EQ(pipeline(make(0)), pipeline(make(1)));
+}
+
+TEST_F(Kernels, share_a_pipeline_where_a_constant_that_is_not_given_is_the_shaders_own) {
+    const auto make = [](std::vector<uint32_t> constants) {
+        return pipeline(Kernel(device(), {.shader = "finish_hits", .constants = std::move(constants)}));
+    };
+    EXPECT_EQ(make({64}), make({64, 0, 0, 0, 0, 0, 0, 0})); // exact leaves, and no smooth map
+    EXPECT_NE(make({64}), make({64, 1}));
+    EXPECT_NE(make({64}), make({64, 0, 0, 0, 0, 0, 0, 1}));
+    // Eight lanes.
+    EXPECT_EQ(pipeline(Kernel(device(), {.shader = "bottom_build", .constants = {8}})),
+              pipeline(Kernel(device(), {.shader = "bottom_build", .constants = {8, 8}})));
+    EXPECT_NE(pipeline(Kernel(device(), {.shader = "bottom_build", .constants = {8}})),
+              pipeline(Kernel(device(), {.shader = "bottom_build", .constants = {8, 4}})));
 }
 
 TEST_F(Kernels, are_shared_by_devices_unless_one_is_of_its_own) {

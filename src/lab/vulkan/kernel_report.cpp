@@ -46,6 +46,25 @@ TreeForm find_form(TreeKind kind) {
     }
 }
 
+const std::map<uint32_t, std::string> kConstantNames = {
+    {0, "group_size"},
+    {scalar::kSmoothConstant, "smooth"},
+    {scalar::kLayersConstant, "layers"},
+    {scalar::kNormalMapsConstant, "normal_maps"},
+    {scalar::kLightTreeConstant, "light_tree"},
+    {scalar::kLightLinksConstant, "light_links"},
+    {scalar::kLightTexturesConstant, "light_textures"},
+    {scalar::kLightKindsConstant, "light_kinds"},
+    {scalar::kLightGroupsConstant, "light_groups"},
+    {scalar::kDefaultGroupConstant, "default_group"},
+    {scalar::kEnvironmentGroupConstant, "environment_group"},
+    {scalar::kGlassConstant, "glass"},
+    {scalar::kTerminatorsConstant, "terminators"},
+    {scalar::kShadowCatchersConstant, "shadow_catchers"},
+    {scalar::kInputTexturesConstant, "input_textures"},
+    {scalar::kGuidesConstant, "guides"},
+    {scalar::kAnisotropyConstant, "anisotropy"}};
+
 /// Makes the objects that make kernels, case by case, and lists what was compiled.
 class KernelLister {
   public:
@@ -53,6 +72,7 @@ class KernelLister {
         : settings_(settings), on_case_(on_case) {}
 
     KernelReport run() {
+        report_.constant_names = kConstantNames;
         {
             const Device device(make_config(RenderMethod::compute));
             report_.device = device.description().name, report_.driver = device.description().driver;
@@ -155,29 +175,6 @@ class KernelLister {
 KernelReport report_kernels(const RenderSettings& settings,
                             const std::function<void(const std::string&)>& on_case) {
     return vulkan::KernelLister(settings, on_case).run();
-}
-
-std::string get_constant_name(uint32_t number) {
-    static const std::map<uint32_t, std::string> names = {
-        {0, "group_size"},
-        {scalar::kSmoothConstant, "smooth"},
-        {scalar::kLayersConstant, "layers"},
-        {scalar::kNormalMapsConstant, "normal_maps"},
-        {scalar::kLightTreeConstant, "light_tree"},
-        {scalar::kLightLinksConstant, "light_links"},
-        {scalar::kLightTexturesConstant, "light_textures"},
-        {scalar::kLightKindsConstant, "light_kinds"},
-        {scalar::kLightGroupsConstant, "light_groups"},
-        {scalar::kDefaultGroupConstant, "default_group"},
-        {scalar::kEnvironmentGroupConstant, "environment_group"},
-        {scalar::kGlassConstant, "glass"},
-        {scalar::kTerminatorsConstant, "terminators"},
-        {scalar::kShadowCatchersConstant, "shadow_catchers"},
-        {scalar::kInputTexturesConstant, "input_textures"},
-        {scalar::kGuidesConstant, "guides"},
-        {scalar::kAnisotropyConstant, "anisotropy"}};
-    const auto found = names.find(number);
-    return found == names.end() ? "" : found->second;
 }
 
 } // namespace relief
