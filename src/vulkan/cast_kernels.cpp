@@ -63,6 +63,10 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     if (stack_size > 1) stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
     scene_traversal = make_walk(device, settings.experiment.method, scene.traversal_kernel(),
                                 scene.add_contents({kGroup, stack_size}, settings.surface.lod));
+    if (config.collected > 0)
+        collecting_traversal =
+            make_walk(device, settings.experiment.method, scene.traversal_kernel(),
+                      scene.add_collecting(scene.add_contents({kGroup, stack_size}, settings.surface.lod)));
     find_jobs = Kernel(device, {"find_jobs", scene.add_contents({kGroup}, settings.surface.lod)});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});

@@ -24,6 +24,7 @@ struct CastKernels {
 
     Kernel scene_traversal, find_jobs, prepare_arguments, bottom_cache, patch_traversal, bottom_fused,
         leftover, commit_round, finish_hits;
+    std::optional<Kernel> collecting_traversal; ///< of the round in which rays offer all candidates left
     /// One per bin that trees of the scene can fall into; none in the fused form.
     std::array<std::optional<Kernel>, scalar::kBuildBinCount> bottom_build;
 };

@@ -105,6 +105,11 @@ std::vector<uint32_t> DeviceScene::add_contents(std::vector<uint32_t> constants,
     return constants;
 }
 
+std::vector<uint32_t> DeviceScene::add_collecting(std::vector<uint32_t> constants) {
+    set_constant(constants, scalar::kCollectsConstant, 1);
+    return constants;
+}
+
 std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
     set_constant(constants, scalar::kNormalMapsConstant, has_normal_maps_ ? 1 : 0);

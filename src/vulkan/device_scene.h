@@ -43,6 +43,8 @@ class DeviceScene {
     /// Constants of a kernel that walks the scene trees, with scalar::kPolygonsConstant, kTilesConstant and
     /// kRayLodConstant.
     std::vector<uint32_t> add_contents(std::vector<uint32_t> constants, LodRule lod) const;
+    /// The same with scalar::kCollectsConstant.
+    static std::vector<uint32_t> add_collecting(std::vector<uint32_t> constants);
     /// The same as add_filter, and scalar::kNormalMapsConstant, kInputTexturesConstant and
     /// kAnisotropyConstant, for the kernel that finds shading normals.
     std::vector<uint32_t> add_normal_maps(std::vector<uint32_t> constants) const;

@@ -34,7 +34,7 @@ constexpr uint32_t kPairCountWord = offsetof(CounterData, pair_count) / sizeof(u
 TracerConfig complete_config(TracerConfig config, const PreparedScene& scene,
                              const RenderSettings& settings) {
     config.may_see_coarser |= make_bounce_lod(scene, settings).cell_angle > 0;
-    config.pair_capacity = std::max(config.pair_capacity, scalar::kMostSlots);
+    config.pair_capacity = std::max({config.pair_capacity, scalar::kMostSlots, config.collected});
     return config;
 }
 
@@ -162,6 +162,8 @@ CastStatistics Tracer::Implementation::cast_or_discard(const Buffer& list, uint3
 uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
     // Few rays need a second round, but some of those need many: they offer more candidates per round.
     push.slots = push.round == 0 ? config.slots : std::min(2 * config.slots, scalar::kMostSlots);
+    push.is_collecting = push.round == 1 && kernels.collecting_traversal ? 1 : 0;
+    if (push.is_collecting) push.slots = config.collected;
     const uint32_t chunk = std::max(1u, config.pair_capacity / push.slots);
     clear(offsetof(CounterData, next_active_count), sizeof(uint32_t));
     for (push.first = 0; push.first < active_count; push.first += chunk) {
@@ -189,7 +191,8 @@ void Tracer::Implementation::traverse_scene() {
     commands.begin_stage(Stage::top_traversal);
     clear(offsetof(CounterData, request_count), sizeof(uint32_t));
     if (directories.is_needed()) commands.fill(buffers.histogram, 0, scalar::kRequestBits / 8, 0);
-    commands.dispatch(kernels.scene_traversal, push.count, push);
+    commands.dispatch(push.is_collecting ? *kernels.collecting_traversal : kernels.scene_traversal,
+                      push.count, push);
 }
 
 /// Builds the tiles requested by rays; true: the traversal must be repeated.

@@ -14,6 +14,7 @@
 #include "engine/render_passes.h"
 #include "engine/stop_request.h"
 #include "relief/error.h"
+#include "vulkan/layout/device_rays.h"
 #include "vulkan/path_tracer.h"
 #include "vulkan/ray_batch.h"
 #include "vulkan/sized_tracer.h"
@@ -41,6 +42,7 @@ class VulkanEngine final : public Engine, private PassTracer {
         : scene_(std::move(scene)),
           settings_(settings),
           device_(std::move(device)),
+          has_walk_(walk.has_value()),
           device_scene_(*device_, *scene_, walk ? &*walk : nullptr) {}
 
     /// Unsupported: texels and trees on the device are immutable.
@@ -62,6 +64,7 @@ class VulkanEngine final : public Engine, private PassTracer {
     std::shared_ptr<const PreparedScene> scene_;
     RenderSettings settings_;
     std::unique_ptr<Device> device_;
+    bool has_walk_; ///< of the lab
     DeviceScene device_scene_;
     SizedTracer<PathTracer> paths_;
     mutable std::mutex mutex_;
@@ -75,6 +78,8 @@ std::unique_ptr<Tracer> VulkanEngine::make_tracer(uint32_t rays, uint32_t share)
     TracerConfig config;
     config.ray_capacity = rays;
     config.slots = kSlots;
+    // A launch costs a GPU more than what a few candidates too many cost it.
+    config.collected = device_->is_cpu() || has_walk_ ? 0 : scalar::kMostCollected;
     config.pair_capacity = rays / share * kSlots;
     return std::make_unique<Tracer>(*device_, *scene_, device_scene_, settings_, config);
 }

@@ -17,6 +17,7 @@ struct Case {
     size_t cache_bytes = size_t(64) << 20;
     uint32_t pair_capacity = 1u << 16;
     uint32_t slots = 4;
+    uint32_t collected = 0;
     uint32_t rays = 1500;
     uint32_t restart_units = 1u << 31;
     LodRule lod = LodRule::field;
@@ -49,6 +50,7 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     TracerConfig config;
     config.pair_capacity = c.pair_capacity;
     config.slots = c.slots;
+    config.collected = c.collected;
     config.pool_restart_units = c.restart_units;
     expect_same(cast_on_device(device(), *scene, settings, rays, config), cast_on_cpu(scene, settings, rays),
                 rays);
@@ -112,6 +114,9 @@ INSTANTIATE_TEST_SUITE_P(
              .cache_bytes = 0},
         Case{.name = "one_patch_a_round", .pair_capacity = 64, .slots = 1},
         Case{.name = "many_chunks", .level = 3, .pair_capacity = 512, .slots = 8},
+        Case{.name = "all_left_collected", .slots = 1, .collected = 64},
+        Case{.name = "tiles_collected", .level = 6, .slots = 1, .collected = 64},
+        Case{.name = "too_many_to_collect", .pair_capacity = 512, .slots = 1, .collected = 2},
         Case{.name = "level_a_ray", .level = kAutoLevel, .lod = LodRule::ray},
         Case{.name = "many_waves", .level = 6, .cache_bytes = 1}),
     [](const auto& info) { return std::string(info.param.name); });

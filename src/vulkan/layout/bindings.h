@@ -122,6 +122,8 @@ const uint kBicubicConstant = 23u;
 const uint kPolygonsConstant = 24u;
 const uint kTilesConstant = 25u;
 const uint kRayLodConstant = 26u;
+// Of the walk of a round that collects: not 0.
+const uint kCollectsConstant = 27u;
 
 #include "formulas/end.h"
 #endif

@@ -63,8 +63,12 @@ FN uint hash_directory(uint patch_number, uint levels) {
     return hash_combine(hash_uint(patch_number), levels);
 }
 
-/// Maximum candidates that a ray offers per round.
+/// Maximum candidates that a ray offers per round, and in one that collects.
 const uint kMostSlots = 8u;
+const uint kMostCollected = 64u;
+
+/// The tree of the first candidate, which is none, of a ray that had more than it may collect.
+const uint kOverflown = 0xfffffffeu;
 
 /// Push constants of the kernels of a cast.
 struct CastPush {
@@ -72,6 +76,7 @@ struct CastPush {
     uint round;          ///< 0: rays start from the root
     uint slots;          ///< nearest candidates that a ray offers, at most kMostSlots
     uint is_any;         ///< any-hit query
+    uint is_collecting;  ///< rays offer all their candidates or, if those are too many, none
     uint is_repeated;    ///< process only rays that wait for tiles
     uint wave;           ///< index of this wave of jobs
     uint pool_start;     ///< pool_head when the wave began

@@ -5,20 +5,23 @@
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 
-/// The candidate of rank `rank` by (instance, patch).
+/// The candidate of rank `rank` by (instance, patch). Those of a ray come first among its places.
 CandidateData find_ranked(uint place, uint rank) {
-    for (uint k = 0u; k < push.slots; ++k) {
-        CandidateData candidate = candidates[place * push.slots + k];
+    uint first = place * push.slots;
+    uint count = 0u;
+    while (count < push.slots && candidates[first + count].instance != kNone) ++count;
+    for (uint k = 0u; k < count; ++k) {
+        CandidateData candidate = candidates[first + k];
         uint before = 0u;
-        for (uint other = 0u; other < push.slots; ++other) {
-            CandidateData o = candidates[place * push.slots + other];
-            if (o.instance != kNone && (o.instance < candidate.instance ||
-                                        (o.instance == candidate.instance && o.patch_index < candidate.patch_index)))
+        for (uint other = 0u; other < count; ++other) {
+            CandidateData o = candidates[first + other];
+            if (o.instance < candidate.instance ||
+                (o.instance == candidate.instance && o.patch_index < candidate.patch_index))
                 ++before;
         }
-        if (candidate.instance != kNone && before == rank) return candidate;
+        if (before == rank) return candidate;
     }
-    return candidates[place * push.slots];
+    return candidates[first];
 }
 
 void take_hit(uint ray_index, uint place) {
@@ -40,11 +43,17 @@ void main() {
     if (place >= push.count || counters.deferred_count > 0u) return;
     uint ray_index = active_rays[push.first + place];
     take_hit(ray_index, place);
-    CandidateData last = candidates[place * push.slots + push.slots - 1u];
-    if (last.instance == kNone) return; // all candidates were offered
     HitData best = hits[ray_index];
-    if (best.instance != kNone && (push.is_any != 0u || last.entry > best.t * kBoxSlack)) return;
-    cursors[ray_index] = CursorData(last.entry, last.instance, last.tree);
+    if (best.instance != kNone && push.is_any != 0u) return;
+    if (push.is_collecting != 0u) {
+        CandidateData first = candidates[place * push.slots];
+        if (first.instance != kNone || first.tree != kOverflown) return; // all candidates were offered
+    } else {
+        CandidateData last = candidates[place * push.slots + push.slots - 1u];
+        if (last.instance == kNone) return; // all candidates were offered
+        if (best.instance != kNone && last.entry > best.t * kBoxSlack) return;
+        cursors[ray_index] = CursorData(last.entry, last.instance, last.tree);
+    }
     uint next = atomicAdd(counters.next_active_count, 1u);
     next_active_rays[next] = ray_index;
 }

@@ -128,11 +128,9 @@ uint find_slot_rank(uint candidate_index, uint slots) {
     CandidateData own = candidates[candidate_index];
     uint first = candidate_index / slots * slots;
     uint rank = 0u;
-    for (uint k = first; k < first + slots; ++k) {
+    for (uint k = first; k < first + slots && candidates[k].instance != kNone; ++k) {
         uint instance = candidates[k].instance;
-        if (instance != kNone && (instance < own.instance ||
-                                  (instance == own.instance && candidates[k].patch_index < own.patch_index)))
-            ++rank;
+        if (instance < own.instance || (instance == own.instance && candidates[k].patch_index < own.patch_index)) ++rank;
     }
     return rank;
 }

@@ -23,6 +23,8 @@ bool has_hit;
 layout(constant_id = kPolygonsConstant) const uint kHasPolygons = 1;
 layout(constant_id = kTilesConstant) const uint kHasTiles = 1;
 
+layout(constant_id = kCollectsConstant) const uint kCollects = 0;
+
 /// A candidate in its slot, ordered by (entry, instance, tree).
 struct Slot {
     float entry;
@@ -32,6 +34,8 @@ struct Slot {
 // The nearest candidates so far, sorted. Only the last push.slots of the slots are used: those before hold what is
 // nearer than all, free ones what is further. Indices are constants, so that slots stay in registers.
 Slot slots[kMostSlots];
+uint first_candidate; ///< of the ray
+uint collected = 0u;  ///< candidates; more than push.slots: too many
 bool is_blocked = false; ///< tiles are missing that the host must build first
 
 void clear_slots() {
@@ -40,7 +44,9 @@ void clear_slots() {
 }
 
 /// Distance beyond which this round ignores everything.
-float find_limit() { return min(best_t, slots[kMostSlots - 1u].entry) * kBoxSlack; }
+float find_limit() {
+    return (kCollects != 0u ? best_t : min(best_t, slots[kMostSlots - 1u].entry)) * kBoxSlack;
+}
 
 bool is_after(float entry, uint at_instance, uint tree, CursorData mark) {
     if (entry != mark.entry) return entry > mark.entry;
@@ -62,6 +68,12 @@ bool is_offered(uint tree) {
 /// Inserts a tree of this instance if it follows the cursor and is among the nearest so far.
 void offer_candidate(uint tree, float entry) {
     if (push.round > 0u && !is_after(entry, instance_index, tree, cursors[ray_index])) return;
+    if (kCollects != 0u) {
+        if (collected < push.slots)
+            candidates[first_candidate + collected] = CandidateData(instance_index, tree, 0u, 0u, entry);
+        collected = min(collected + 1u, push.slots + 1u);
+        return;
+    }
     Slot moved = Slot(entry, instance_index, tree);
     if (!is_slot_after(slots[kMostSlots - 1u], moved)) return;
     if (kMayOfferTwice && is_offered(tree)) return;
@@ -182,27 +194,43 @@ uint take_pairs(uint count) {
 #endif
 }
 
-/// Emits pairs for the candidates; a ray that waits for tiles, or is done, emits none.
-void emit_candidates(uint place, bool is_done) {
+/// Emits pairs for the candidates in the slots; see find_jobs.comp for what they lack. None: a ray that is done, or waits.
+void emit_slots(bool is_none) {
     uint count = 0u;
     for (uint k = 0u; k < kMostSlots; ++k)
         if (slots[k].tree != kNone) ++count;
-    if (is_blocked || is_done) count = 0u;
+    if (is_none) count = 0u;
     uint pair = take_pairs(count);
-    uint candidate = place * push.slots;
+    uint candidate = first_candidate;
     for (uint k = 0u; k < kMostSlots; ++k) {
         if (k + push.slots >= kMostSlots) {
             candidates[candidate].instance = kNone;
             if (count > 0u && slots[k].tree != kNone) {
-                candidates[candidate] =
-                    CandidateData(slots[k].instance, slots[k].tree, 0u, 0u, slots[k].entry); // see find_jobs.comp
+                candidates[candidate] = CandidateData(slots[k].instance, slots[k].tree, 0u, 0u, slots[k].entry);
                 pairs[pair] = uvec2(slots[k].tree, candidate);
                 ++pair;
             }
             ++candidate;
         }
     }
-    if (is_blocked) candidates[place * push.slots].tree = kNone;
+}
+
+/// The same for what was collected.
+void emit_collected(bool is_none) {
+    bool is_overflown = collected > push.slots;
+    uint count = is_none || is_overflown ? 0u : collected;
+    uint pair = take_pairs(count);
+    for (uint k = 0u; k < count; ++k) pairs[pair + k] = uvec2(candidates[first_candidate + k].tree, first_candidate + k);
+    if (count < push.slots) candidates[first_candidate + count].instance = kNone;
+    if (is_overflown && !is_none) candidates[first_candidate].tree = kOverflown;
+}
+
+void emit_candidates(bool is_done) {
+    if (kCollects != 0u)
+        emit_collected(is_done || is_blocked);
+    else
+        emit_slots(is_done || is_blocked);
+    if (is_blocked) candidates[first_candidate].tree = kNone;
 }
 
 bool is_waiting(uint place) {
@@ -217,11 +245,12 @@ void trace_round() {
     ray_t_max = rays[ray_index].t_max;
     has_hit = push.round > 0u && hits[ray_index].instance != kNone;
     best_t = has_hit ? hits[ray_index].t : ray_t_max;
-    clear_slots();
+    first_candidate = place * push.slots;
+    if (kCollects == 0u) clear_slots();
     if (push.root != kNone && !walk()) atomicAdd(counters.rays_lost, 1u);
     if (push.round == 0u && !has_hit) hits[ray_index] = HitData(kInfinity, kNone, kNone, 0.0, 0.0, 0u, 0u);
     nearest[place] = make_nearest(best_t, 0xffffffffu);
-    emit_candidates(place, push.is_any != 0u && has_hit);
+    emit_candidates(push.is_any != 0u && has_hit);
 }
 
 #endif
