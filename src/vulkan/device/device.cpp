@@ -89,6 +89,7 @@ uint32_t Device::max_draw_size() const {
                      limits.maxViewportDimensions[1]});
 }
 uint64_t Device::available_bytes() const { return implementation_->memory->available_bytes(); }
+uint64_t Device::held_bytes() const { return implementation_->memory->held_bytes(); }
 uint64_t Device::allocated_bytes(Purpose purpose) const {
     return implementation_->memory->allocated_bytes(purpose);
 }
