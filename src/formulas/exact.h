@@ -2,6 +2,8 @@
 // that determines surface positions uses it.
 #ifndef RELIEF_EXACT_H
 #define RELIEF_EXACT_H
+#include "formulas/cross.h"
+
 #include "formulas/begin.h"
 
 FN Vec3 add_exact(Vec3 a, Vec3 b) {
@@ -21,14 +23,6 @@ FN Vec3 scale_exact(Vec3 a, float s) {
 
 FN float dot_exact(Vec3 a, Vec3 b) {
     EXACT float r = a.x * b.x + a.y * b.y + a.z * b.z;
-    return r;
-}
-
-FN Vec3 cross_exact(Vec3 a, Vec3 b) {
-    EXACT float x = a.y * b.z - a.z * b.y;
-    EXACT float y = a.z * b.x - a.x * b.z;
-    EXACT float z = a.x * b.y - a.y * b.x;
-    Vec3 r = {x, y, z};
     return r;
 }
 

@@ -89,7 +89,7 @@ FN float largest_falloff(LightSourceData source, Vec3 to) {
     if (distance <= source.radius) return 1.0f;
     // The angle to the axis, less that of the sphere's radius.
     float sine = source.radius / distance;
-    float cosine = sqrt(1.0f - sine * sine);
+    float cosine = sqrt(max(1.0f - sine * sine, 0.0f));
     float along = -dot(direction, source.basis.n);
     float across = sqrt(max(1.0f - along * along, 0.0f));
     return along >= cosine ? 1.0f : spot_falloff(source, 1.0f - (along * cosine + across * sine));

@@ -3,6 +3,7 @@
 #ifndef RELIEF_LANES
 #define RELIEF_SHADING_NORMAL_H
 #include "formulas/basis.h"
+#include "formulas/cross.h"
 #endif
 #include "formulas/begin.h"
 
@@ -63,7 +64,7 @@ FN Vec3 displace_derivative_through(SurfaceDerivative along, Basis frame, Vec3 d
 /// Normal from the displaced derivatives; `normal`, the interpolated one, where they are degenerate.
 FN Vec3 make_displaced_normal(Vec3 along_u, Vec3 along_v, Vec3 normal) {
     Vec3 zero = {Float(0.0f), Float(0.0f), Float(0.0f)};
-    Vec3 result = make_unit(cross(along_u, along_v));
+    Vec3 result = make_unit(cross_exact(along_u, along_v));
     return select(result == zero, normal, result);
 }
 

@@ -2,6 +2,7 @@
 #if !defined(RELIEF_SURFACE_POINT_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SURFACE_POINT_H
+#include "formulas/cross.h"
 #endif
 #include "formulas/begin.h"
 
@@ -33,7 +34,8 @@ FN Vec3 blend_corners(Vec3 a, Vec3 b, Vec3 c, CornerWeights weights) {
 
 /// `edge_b`, `edge_c`: from corner 0 to 1 and 2, world space; `turn`: -1 for mirrored instances, else 1.
 FN TrianglePoint make_triangle_point(Vec3 position, Vec3 edge_b, Vec3 edge_c, Float turn, Float uv_area) {
-    Vec3 area = cross(edge_b, edge_c) * turn;
+    // Of a triangle that has vanished exactly zero: a remainder would have a normal.
+    Vec3 area = cross_exact(edge_b, edge_c) * turn;
     TrianglePoint point = {position, make_unit(area), Float(0.5f) * length(area) / uv_area};
     return point;
 }

@@ -205,6 +205,7 @@ HWY_INLINE Vec3 normalize(const Vec3& a) { return make_unit(a); }
 using scalar::kPi;
 #define RELIEF_LANES
 #include "formulas/basis.h"
+#include "formulas/cross.h"
 #include "formulas/octahedron.h"
 #include "formulas/picture_plane.h"
 #include "formulas/shading_normal.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "film/film.h"
 #include "vulkan/device/commands.h"
@@ -21,27 +20,19 @@ struct FilmBatch {
 /// Not thread safe.
 class FilmReader {
   public:
-    /// `capacity`: most pixels of a batch. The device must outlive it.
-    FilmReader(const Device& device, uint32_t capacity);
+    /// The device must outlive it.
+    explicit FilmReader(const Device& device);
 
-    /// Records the way of the sums of `count` pixels to the host. What `film` has no use for stays on a
-    /// device that does not share the host's memory. `scratch` is bound to kBindPoints and free.
-    void fetch(Commands& commands, const Film& film, const Buffer& sums, const Buffer& scratch,
-               uint32_t count);
+    /// Where `film` has use for colours alone, records what brings those of `count` pixels together in
+    /// `scratch`, which is bound to kBindPoints and free.
+    void pack(Commands& commands, const Film& film, const Buffer& scratch, uint32_t count);
 
-    /// Adds a batch whose sums were fetched; those of a CPU device are read from `sums`.
+    /// Adds a batch: what was packed last, or all of `sums`.
     void add(Film& film, const Buffer& sums, const FilmBatch& batch);
 
   private:
-    scalar::FilmSumsData read_sums(size_t pixel) const;
-
-    const Device& device_;
-    uint32_t capacity_;
     Kernel film_colors_;
-    Buffer on_host_;                              ///< of devices with memory of their own
-    std::span<const scalar::FilmSumsData> whole_; ///< of the batch
-    std::span<const scalar::FilmColorsData> colors_;
-    std::vector<scalar::FilmSumsData> downloaded_;
+    const Buffer* packed_ = nullptr; ///< the scratch memory; null: nothing was packed
 };
 
 } // namespace relief::vulkan

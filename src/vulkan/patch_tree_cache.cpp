@@ -15,8 +15,14 @@ constexpr uint64_t kUnitBytes = scalar::kPoolUnitWords * sizeof(uint32_t);
 constexpr uint64_t kLeastBytes = uint64_t(1) << 20;    ///< room for a few of the largest trees
 constexpr uint64_t kWorkingBytes = uint64_t(64) << 20; ///< size of the pool without a cache
 constexpr uint32_t kBudgetShare = 4;                   ///< a wave may overwrite 1 / kBudgetShare of the pool
-constexpr uint64_t kDeviceShare = 4;                   ///< the pool may take 1 / kDeviceShare of what is free
+/// A wave of a GPU costs more than what it overwrites.
+constexpr uint32_t kBudgetShareOfGpu = 2;
+constexpr uint64_t kDeviceShare = 4; ///< the pool may take 1 / kDeviceShare of what is free
 constexpr uint64_t kGrowth = 4;
+/// The most that a GPU begins with. Its driver makes memory ready much slower (45 ms a GB on an H100, driver
+/// 580) than trees are built there (0.8 ms), so that more pays only once very many were built again.
+constexpr uint64_t kFirstBytes = uint64_t(1) << 30;
+constexpr uint64_t kRebuildsBeforeGrowth = 32;
 
 /// A GPU has work for all its lanes only where the trees of a wave have room.
 uint64_t choose_bytes(const Device& device, const PoolLimits& limits) {
@@ -24,7 +30,8 @@ uint64_t choose_bytes(const Device& device, const PoolLimits& limits) {
     if (is_kept && limits.cap_bytes) return *limits.cap_bytes;
     const uint64_t usual = is_kept ? kDefaultCacheBytes : kWorkingBytes;
     // Levels that several rays see differently, and tiles, take more than is known.
-    return device.is_cpu() ? usual : std::max(usual, limits.tree_bytes + limits.tree_bytes / 8);
+    const uint64_t expected = limits.tree_bytes + limits.tree_bytes / 8;
+    return device.is_cpu() ? usual : std::clamp(expected, usual, kFirstBytes);
 }
 
 } // namespace
@@ -47,14 +54,15 @@ void PatchTreeCache::bind(BindingTable& bindings) const { bindings.bind(scalar::
 void PatchTreeCache::grow(Commands& commands, BindingTable& bindings) {
     commands.run(); // what was recorded may use the pool
     make_pool(std::min(kGrowth * pool_.byte_count(), most_bytes_));
+    built_units_ = 0;
     bind(bindings);
 }
 
 void PatchTreeCache::begin_chunk(const Buffer& trees, Commands& commands, BindingTable& bindings) {
-    const bool is_growing = is_too_small_ && pool_.byte_count() + kLeastBytes <= most_bytes_;
+    const bool is_growing =
+        built_units_ > kRebuildsBeforeGrowth * capacity_ && pool_.byte_count() + kLeastBytes <= most_bytes_;
     if (head_ < last_head_ && !is_growing) return;
     if (is_growing) grow(commands, bindings);
-    is_too_small_ = false;
     head_ = 0;
     commands.fill(trees, 0, trees.byte_count(), 0);
 }
@@ -63,7 +71,8 @@ void PatchTreeCache::begin_chunk(const Buffer& trees, Commands& commands, Bindin
 /// it.
 uint32_t PatchTreeCache::find_budget() const {
     if (!is_kept_) return capacity_;
-    return std::max(capacity_ / kBudgetShare, capacity_ - std::min(head_, capacity_));
+    const uint32_t share = device_.is_cpu() ? kBudgetShare : kBudgetShareOfGpu;
+    return std::max(capacity_ / share, capacity_ - std::min(head_, capacity_));
 }
 
 void PatchTreeCache::begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands) {
@@ -79,8 +88,9 @@ void PatchTreeCache::begin_wave(scalar::CastPush& push, const Buffer& counters, 
 
 void PatchTreeCache::end_wave(const scalar::CounterData& counters) {
     // Allocations refused at the end of the wave advanced the counter as well.
-    head_ = std::min(counters.pool_head, head_ + find_budget());
-    is_too_small_ |= counters.deferred_count > 0 || head_ > capacity_;
+    const uint32_t head = std::min(counters.pool_head, head_ + find_budget());
+    built_units_ += head - head_;
+    head_ = head;
 }
 
 } // namespace relief::vulkan

@@ -26,7 +26,7 @@ class PatchTreeCache {
     void bind(BindingTable& bindings) const;
 
     /// Call before the jobs of a chunk of rays are collected. May clear the records of all trees in `trees`:
-    /// where addresses restart, and where the pool grows because trees had to wait or were overwritten.
+    /// where addresses restart, and where the pool grows because trees were overwritten again and again.
     void begin_chunk(const Buffer& trees, Commands& commands, BindingTable& bindings);
 
     /// Fills in the push constants of a wave of jobs and records the commands that precede it.
@@ -43,10 +43,10 @@ class PatchTreeCache {
     Buffer pool_;
     bool is_kept_;
     uint32_t last_head_;
-    uint64_t most_bytes_ = 0; ///< that the pool may grow to
-    bool is_too_small_ = false;
-    uint32_t capacity_ = 0; ///< units
-    uint32_t head_ = 0;     ///< next address, units
+    uint64_t most_bytes_ = 0;  ///< that the pool may grow to
+    uint64_t built_units_ = 0; ///< since the pool was made
+    uint32_t capacity_ = 0;    ///< units
+    uint32_t head_ = 0;        ///< next address, units
     uint32_t wave_ = 0;
 };
 

@@ -100,7 +100,7 @@ PathTracer::PathTracer(Tracer& tracer, const RenderSettings& settings)
       light_layers_(find_light_layers(settings.image.layers)),
       notes_first_hits_(needs_mattes(settings.image.layers)),
       lights_(tracer.device(), tracer.scene(), tracer.device_scene()),
-      film_reader_(tracer.device(), capacity_) {
+      film_reader_(tracer.device()) {
     DCHECK(capacity_ > 0);
     const Device& device = tracer.device();
     camera_kernel_ = make_kernel(device, "camera");
@@ -202,7 +202,7 @@ void PathTracer::trace_batch(Film& film, SampleRange samples,
             if (whole_sums_ && light_bytes > 0)
                 commands.copy(film_sums_, find_light_sums(), whole_sums_, find_light_sums(), light_bytes);
             const bool is_last = done + 1 == samples.count;
-            if (is_last) film_reader_.fetch(commands, film, film_sums_, points_, uint32_t(pixels_.size()));
+            if (is_last && !whole_sums_) film_reader_.pack(commands, film, points_, uint32_t(pixels_.size()));
             if (whole_sums_ || is_last) commands.run();
             if (whole_sums_) on_samples(pixels_.size());
         }

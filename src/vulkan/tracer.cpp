@@ -105,7 +105,8 @@ struct Tracer::Implementation {
     CastPush push{};
     CounterData counters{};
     Totals totals;
-    uint64_t cast_pairs = 0; ///< of this cast
+    uint64_t cast_pairs = 0;    ///< of this cast
+    bool has_collected = false; ///< in this cast
 };
 
 void Tracer::Implementation::reserve_trees() {
@@ -162,7 +163,10 @@ CastStatistics Tracer::Implementation::cast_or_discard(const Buffer& list, uint3
 uint32_t Tracer::Implementation::trace_round(uint32_t active_count) {
     // Few rays need a second round, but some of those need many: they offer more candidates per round.
     push.slots = push.round == 0 ? config.slots : std::min(2 * config.slots, scalar::kMostSlots);
-    push.is_collecting = push.round == 1 && kernels.collecting_traversal ? 1 : 0;
+    if (push.round == 0) has_collected = false;
+    const bool has_room = uint64_t(active_count) * config.collected <= config.pair_capacity;
+    push.is_collecting = push.round > 0 && !has_collected && has_room && kernels.collecting_traversal;
+    has_collected |= push.is_collecting != 0;
     if (push.is_collecting) push.slots = config.collected;
     const uint32_t chunk = std::max(1u, config.pair_capacity / push.slots);
     clear(offsetof(CounterData, next_active_count), sizeof(uint32_t));

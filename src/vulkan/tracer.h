@@ -16,7 +16,8 @@ struct TracerConfig {
     uint32_t ray_capacity = 1u << 20; ///< capacity of the ray and hit buffers and of lists
     uint32_t slots =
         4; ///< nearest candidates that a ray offers in its first round, [1, 8]; twice as many later
-    /// Candidates that a ray may offer in its second round, all that it has left; 0: there is no such round.
+    /// Candidates that a ray may offer, all that it has left, in the first of the later rounds that has room
+    /// for so many of each ray; 0: there is no such round.
     uint32_t collected = 0;
     uint32_t pair_capacity =
         1u << 22; ///< capacity for pairs of ray and patch, >= slots; a smaller one means more chunks of rays

@@ -238,15 +238,20 @@ inline bool misses_box(const BoxRay& ray, const Box& box) {
     return entry > exit * (1 + 1e-12);
 }
 
+/// Whether a ray that ends at a hit of the triangle at `t` does not come into the triangle's box, by the test
+/// that engines run.
+inline bool ends_before_box(const BoxRay& ray, const Triangle& triangle, float t) {
+    const scalar::ObjectRay own = scalar::make_object_ray(ray.origin, ray.direction);
+    const Box box = triangle.box();
+    return !scalar::is_box_met(scalar::cross_box(own, box.lower, box.upper, ray.t_min, t));
+}
+
 /// Whether rounding lets the ray hit a triangle whose own box it misses: walks may find it or not.
 inline bool is_doubtful(const std::vector<Triangle>& triangles, const BoxRay& ray) {
-    const scalar::ObjectRay own = scalar::make_object_ray(ray.origin, ray.direction);
     return std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& triangle) {
         const float t = intersect_as_engines_do(ray, triangle);
         if (t == std::numeric_limits<float>::infinity()) return false;
-        const Box box = triangle.box();
-        return misses_box(ray, box) ||
-               !scalar::is_box_met(scalar::cross_box(own, box.lower, box.upper, ray.t_min, t));
+        return misses_box(ray, triangle.box()) || ends_before_box(ray, triangle, t);
     });
 }
 

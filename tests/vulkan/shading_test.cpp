@@ -1,6 +1,9 @@
 // Each kernel of the path tracer beside the CPU engine, on the same paths and hits.
 #include <cmath>
 #include <optional>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "cpu/shading/terminator.h"
 #include "formulas/basis.h"
@@ -31,6 +34,45 @@ float compare(const Vec3f& a, const Vec3f& b) {
     const float worst = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)}) / scale;
     return is_finite(a) ? worst : INFINITY;
 }
+
+std::string describe(const Vec3f& v) { return fmt::format("({:.9g} {:.9g} {:.9g})", v.x, v.y, v.z); }
+
+std::string describe(const scalar::RayData& ray) {
+    return fmt::format("ray {} + [{:.9g}, {:.9g}] {} bias {}", describe(ray.origin), ray.t_min, ray.t_max,
+                       describe(ray.direction), ray.lod_bias);
+}
+
+/// A case and what the device and the CPU engine made of it.
+template <class T> std::string describe(uint32_t k, const T& device, const T& cpu) {
+    return fmt::format("case {}: {} for {}", k, describe(device), describe(cpu));
+}
+
+/// A case in which only one of them has a light or a bounce.
+std::string describe_choice(const char* what, uint32_t k, bool is_of_device) {
+    return fmt::format("case {}: a {} of the {} alone", k, what, is_of_device ? "device" : "CPU engine");
+}
+
+std::string describe(const ShadingCase& c) {
+    return fmt::format("instance {} patch {} levels {:x} cell {} {} {} at {:.9g} {:.9g}, seen along {}",
+                       c.hit.instance, c.hit.patch, c.hit.levels, c.hit.i, c.hit.j, c.hit.is_upper, c.hit.u,
+                       c.hit.v, describe(c.ray.direction));
+}
+
+/// Cases in which the device went another way than the CPU engine.
+class Flips {
+  public:
+    /// `ways`: both of them; of the first cases they are kept.
+    void add(const ShadingCase& c, const std::string& ways) {
+        if (++count_ <= kKept) text_ += "\n" + ways + "; " + describe(c);
+    }
+    uint32_t count() const { return count_; }
+    const std::string& text() const { return text_; }
+
+  private:
+    static constexpr uint32_t kKept = 12;
+    uint32_t count_ = 0;
+    std::string text_;
+};
 
 class ShadingKernels : public GpuTest {
   protected:
@@ -95,10 +137,14 @@ TEST_F(ShadingKernels, make_the_surface_points_of_the_cpu_engine) {
     for (uint32_t k = 0; k < kCount; ++k) {
         const CpuVertex& v = vertices_[k];
         const scalar::SurfacePointData& point = points[k];
-        ASSERT_LE(compare(point.position, v.point.position), v.point.position_error) << k;
-        ASSERT_LT(compare(point.geometric_normal, v.point.geometric_normal), 1e-4f) << k;
-        ASSERT_LT(compare(point.bent_normal, v.basis.n), 2e-3f) << k;
-        ASSERT_LT(compare(point.base_color, v.material.base_color), 1e-4f) << k;
+        SCOPED_TRACE(describe(cases_[k]));
+        ASSERT_LE(compare(point.position, v.point.position), v.point.position_error)
+            << describe(k, point.position, v.point.position);
+        ASSERT_LT(compare(point.geometric_normal, v.point.geometric_normal), 1e-4f)
+            << describe(k, point.geometric_normal, v.point.geometric_normal);
+        ASSERT_LT(compare(point.bent_normal, v.basis.n), 2e-3f) << describe(k, point.bent_normal, v.basis.n);
+        ASSERT_LT(compare(point.base_color, v.material.base_color), 1e-4f)
+            << describe(k, point.base_color, v.material.base_color);
         ASSERT_NEAR(point.roughness, v.material.roughness, 1e-4f) << k;
         ASSERT_NEAR(point.metallic, v.material.metallic, 1e-4f) << k;
         ASSERT_NEAR(point.area_per_uv, v.point.area_per_uv, 1e-3f * v.point.area_per_uv) << k;
@@ -115,9 +161,12 @@ TEST_F(ShadingKernels, sum_up_first_hits_in_the_film) {
     const auto film = bench().film.download<scalar::FilmSumsData>(kCount);
     for (uint32_t k = 0; k < kCount; ++k) {
         const CpuVertex& v = vertices_[k];
+        SCOPED_TRACE(describe(cases_[k]));
         ASSERT_EQ(film[k].hit_count, 2);
-        ASSERT_LT(compare(film[k].shading_normal * 0.5f, v.point.shading_normal), 2e-3f) << k;
-        ASSERT_LT(compare(film[k].geometric_normal * 0.5f, v.point.geometric_normal), 1e-4f) << k;
+        ASSERT_LT(compare(film[k].shading_normal * 0.5f, v.point.shading_normal), 2e-3f)
+            << describe(k, film[k].shading_normal * 0.5f, v.point.shading_normal);
+        ASSERT_LT(compare(film[k].geometric_normal * 0.5f, v.point.geometric_normal), 1e-4f)
+            << describe(k, film[k].geometric_normal * 0.5f, v.point.geometric_normal);
         ASSERT_LT(compare(film[k].position * 0.5f, v.point.position), 1e-5f) << k;
         ASSERT_LT(compare(film[k].albedo * 0.5f, v.material.base_color), 1e-4f) << k;
         ASSERT_NEAR(film[k].uv.x * 0.5f, v.point.uv.x, 1e-5f) << k;
@@ -139,7 +188,7 @@ TEST_F(ShadingKernels, gather_the_light_that_rays_meet) {
         bench().upload(cases);
         bench().run("background", bench().make_push(depth));
         const auto paths = bench().paths.download<scalar::PathData>(kCount);
-        uint32_t flips = 0;
+        Flips flips;
         for (uint32_t k = 0; k < kCount; ++k) {
             const ShadingCase& c = cases[k];
             const cpu::LightSet& lights = bench().cpu_lights;
@@ -152,9 +201,10 @@ TEST_F(ShadingKernels, gather_the_light_that_rays_meet) {
                                {{c.path.previous, {}, 0}, c.ray.direction, c.hit.t, c.path.bsdf_pdf}, behind);
             else if (!c.hit.is_hit())
                 expected = behind.radiance;
-            if (!(compare(paths[k].radiance, expected) < 2e-3f)) ++flips;
+            if (!(compare(paths[k].radiance, expected) < 2e-3f))
+                flips.add(c, describe(k, paths[k].radiance, expected));
         }
-        EXPECT_LE(flips, kAllowedFlips) << "depth " << depth;
+        EXPECT_LE(flips.count(), kAllowedFlips) << "depth " << depth << flips.text();
     }
 }
 
@@ -213,7 +263,8 @@ TEST_F(ShadingKernels, draw_the_lights_that_the_cpu_engine_draws) {
     const uint32_t count = bench().counters.download<scalar::CounterData>(1)[0].shadow_count;
     std::vector<uint8_t> is_drawn(kCount, 0);
     for (uint32_t ray : bench().shadow_list.download<uint32_t>(count)) is_drawn.at(ray - kCount) += 1;
-    uint32_t flips = 0, drawn_count = 0;
+    Flips flips;
+    uint32_t drawn_count = 0;
     for (uint32_t k = 0; k < kCount; ++k) {
         const Vec2f pick = draw_pair(cases_[k], push, scalar::kPickPair);
         const Vec2f u = draw_pair(cases_[k], push, scalar::kLightPair);
@@ -222,17 +273,20 @@ TEST_F(ShadingKernels, draw_the_lights_that_the_cpu_engine_draws) {
         drawn_count += expected ? 1 : 0;
         ASSERT_LE(is_drawn[k], 1);
         if (!expected || is_drawn[k] == 0) {
-            flips += expected.has_value() != (is_drawn[k] == 1);
+            if (expected.has_value() != (is_drawn[k] == 1))
+                flips.add(cases_[k], describe_choice("light", k, is_drawn[k] == 1));
             continue;
         }
         const float scale = length(expected->contribution);
         const bool is_same =
             compare(paths[k].contribution * (1 / scale), expected->contribution * (1 / scale)) < 2e-2f &&
             is_like(rays[kCount + k], expected->ray);
-        flips += !is_same;
+        if (!is_same)
+            flips.add(cases_[k], describe(k, paths[k].contribution, expected->contribution) + ", " +
+                                     describe(k, rays[kCount + k], expected->ray));
         ASSERT_EQ(paths[k].cost, 2) << k;
     }
-    EXPECT_LE(flips, kAllowedFlips);
+    EXPECT_LE(flips.count(), kAllowedFlips) << flips.text();
     EXPECT_GT(drawn_count, kCount / 3);
 }
 
@@ -241,7 +295,8 @@ TEST_F(ShadingKernels, weigh_the_emission_of_surfaces_that_were_met) {
         make_points(depth);
         bench().run("meet_surface", bench().make_push(depth));
         const auto paths = bench().paths.download<scalar::PathData>(kCount);
-        uint32_t flips = 0, glowing = 0;
+        Flips flips;
+        uint32_t glowing = 0;
         for (uint32_t k = 0; k < kCount; ++k) {
             const ShadingCase& c = cases_[k];
             const float light_pdf =
@@ -249,10 +304,11 @@ TEST_F(ShadingKernels, weigh_the_emission_of_surfaces_that_were_met) {
                           : 0.0f;
             const float weight = depth > 0 ? scalar::power_heuristic(c.path.bsdf_pdf, light_pdf) : 1.0f;
             const Vec3f expected = c.path.throughput * vertices_[k].material.emission * weight;
-            flips += !(compare(paths[k].radiance, expected) < 5e-3f);
+            if (!(compare(paths[k].radiance, expected) < 5e-3f))
+                flips.add(c, describe(k, paths[k].radiance, expected));
             glowing += expected != Vec3f{};
         }
-        EXPECT_LE(flips, kAllowedFlips) << "depth " << depth;
+        EXPECT_LE(flips.count(), kAllowedFlips) << "depth " << depth << flips.text();
         EXPECT_GT(glowing, kCount / 3);
     }
 }
@@ -289,18 +345,22 @@ TEST_F(ShadingKernels, bounce_where_the_cpu_engine_bounces) {
         const uint32_t count = bench().counters.download<scalar::CounterData>(1)[0].path_count;
         std::vector<uint8_t> goes_on(kCount, 0);
         for (uint32_t path : bench().next_path_list.download<uint32_t>(count)) goes_on.at(path) += 1;
-        uint32_t flips = 0, kept = 0;
+        Flips flips;
+        uint32_t kept = 0;
         for (uint32_t k = 0; k < kCount; ++k) {
             const auto expected = expect_bounce(bench(), cases_[k], vertices_[k], push);
             kept += expected ? 1 : 0;
             ASSERT_LE(goes_on[k], 1);
-            if (!expected || goes_on[k] == 0)
-                flips += expected.has_value() != (goes_on[k] == 1);
-            else
-                flips += !(compare(paths[k].throughput, expected->throughput) < 1e-2f &&
-                           is_like(rays[k], expected->ray));
+            if (!expected || goes_on[k] == 0) {
+                if (expected.has_value() != (goes_on[k] == 1))
+                    flips.add(cases_[k], describe_choice("bounce", k, goes_on[k] == 1));
+            } else if (!(compare(paths[k].throughput, expected->throughput) < 1e-2f &&
+                         is_like(rays[k], expected->ray))) {
+                flips.add(cases_[k], describe(k, paths[k].throughput, expected->throughput) + ", " +
+                                         describe(k, rays[k], expected->ray));
+            }
         }
-        EXPECT_LE(flips, kAllowedFlips) << "depth " << depth;
+        EXPECT_LE(flips.count(), kAllowedFlips) << "depth " << depth << flips.text();
         EXPECT_GT(kept, kCount / 4) << "depth " << depth;
     }
 }

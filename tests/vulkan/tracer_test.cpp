@@ -114,9 +114,9 @@ INSTANTIATE_TEST_SUITE_P(
              .cache_bytes = 0},
         Case{.name = "one_patch_a_round", .pair_capacity = 64, .slots = 1},
         Case{.name = "many_chunks", .level = 3, .pair_capacity = 512, .slots = 8},
-        Case{.name = "all_left_collected", .slots = 1, .collected = 64},
-        Case{.name = "tiles_collected", .level = 6, .slots = 1, .collected = 64},
-        Case{.name = "too_many_to_collect", .pair_capacity = 512, .slots = 1, .collected = 2},
+        Case{.name = "all_left_collected", .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
+        Case{.name = "tiles_collected", .level = 6, .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
+        Case{.name = "too_many_to_collect", .pair_capacity = 3000, .slots = 1, .collected = 2},
         Case{.name = "level_a_ray", .level = kAutoLevel, .lod = LodRule::ray},
         Case{.name = "many_waves", .level = 6, .cache_bytes = 1}),
     [](const auto& info) { return std::string(info.param.name); });

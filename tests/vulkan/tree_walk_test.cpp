@@ -90,15 +90,12 @@ struct Truth {
 
 Truth find_truth(const std::vector<Triangle>& triangles, BoxRay ray) {
     Truth truth;
-    const scalar::ObjectRay object_ray = scalar::make_object_ray(ray.origin, ray.direction);
     HostLeaf leaf(triangles, ray);
     for (uint32_t id = 0; id < triangles.size(); ++id) {
         BoxRay whole = ray;
         HostLeaf alone(triangles, ray);
         if (!alone(id, whole)) continue;
-        const Box box = triangles[id].box();
-        truth.is_doubtful |=
-            !scalar::is_box_met(scalar::cross_box(object_ray, box.lower, box.upper, ray.t_min, whole.t_max));
+        truth.is_doubtful |= test::ends_before_box(ray, triangles[id], whole.t_max);
         leaf(id, ray);
     }
     truth.nearest = leaf.result();
@@ -316,7 +313,7 @@ class TreeBatch : public GpuTest {
     std::vector<Truth> find_truths(const TriangleSet& set, const DeviceMesh& mesh,
                                    const std::vector<BoxRay>& rays) {
         std::vector<Truth> truths;
-        uint32_t doubtful = 0;
+        uint32_t doubtful = 0, outside = 0;
         for (const BoxRay& ray : rays) {
             truths.push_back(find_truth(set.triangles, ray));
             doubtful += truths.back().is_doubtful;
@@ -325,7 +322,15 @@ class TreeBatch : public GpuTest {
         if (device().is_cpu()) return truths;
         const DeviceTree leaf = upload_tree(device(), LbvhBuilder::build_heap(set.boxes(), {.levels = 1}));
         const Answers own = run(leaf, mesh, {.traversal = TraversalKind::trail});
-        for (uint32_t k = 0; k < kRayCount; ++k) truths[k].nearest = own.hits[k];
+        // Products below the normal floats, which a device may take for zero, put hits out of their boxes.
+        for (uint32_t k = 0; k < kRayCount; ++k) {
+            const TreeHit& hit = truths[k].nearest = own.hits[k];
+            const bool is_outside =
+                hit.primitive != kNone && test::ends_before_box(rays[k], set.triangles[hit.primitive], hit.t);
+            truths[k].is_doubtful |= is_outside;
+            outside += is_outside;
+        }
+        EXPECT_LE(outside, kRayCount / 5); // 55 of the tiny ones with zeros
         return truths;
     }
 

@@ -125,20 +125,28 @@ void Buffer::upload(std::span<const std::byte> data, uint64_t offset) {
 }
 
 void Buffer::download(std::span<std::byte> data, uint64_t offset) const {
-    DCHECK(offset + data.size() <= byte_count());
+    std::byte* place = data.data();
+    visit(offset, data.size(), 1, [&](std::span<const std::byte> part) {
+        std::memcpy(place, part.data(), part.size());
+        place += part.size();
+    });
+}
+
+void Buffer::visit(uint64_t offset, uint64_t count, uint64_t unit,
+                   const std::function<void(std::span<const std::byte>)>& take) const {
+    DCHECK(offset + count <= byte_count());
+    if (count == 0) return;
     const Implementation& own = *implementation_;
-    if (data.empty() || own.holds_nothing()) return;
-    if (is_direct(own)) {
-        std::memcpy(data.data(), own.memory.mapped() + offset, data.size());
-        return;
-    }
+    if (is_direct(own)) return take({own.memory.mapped() + offset, count});
     Implementation& staging = own.device.staging();
-    for (uint64_t done = 0; done < data.size();) {
-        const uint64_t part = std::min<uint64_t>(data.size() - done, staging.config.bytes);
+    const uint64_t most = staging.config.bytes / unit * unit;
+    DCHECK(most > 0);
+    for (uint64_t done = 0; done < count;) {
+        const uint64_t part = std::min(count - done, most);
         own.device.run_once("download", [&](const vk::raii::CommandBuffer& commands) {
             commands.copyBuffer(*own.buffer, *staging.buffer, vk::BufferCopy(offset + done, 0, part));
         });
-        std::memcpy(data.data() + done, staging.memory.mapped(), part);
+        take({staging.memory.mapped(), part});
         done += part;
     }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -60,6 +61,10 @@ class Buffer {
         download(std::as_writable_bytes(std::span(values)), offset);
         return values;
     }
+    /// Calls `take` with bytes [offset, + count) part by part, in order; each part but the last is a multiple
+    /// of `unit`, which staging memory has room for. What it gets is valid during the call only. Blocks.
+    void visit(uint64_t offset, uint64_t count, uint64_t unit,
+               const std::function<void(std::span<const std::byte>)>& take) const;
     /// Mapped memory; host-visible buffers only. Valid after a completed submission.
     void* mapped() const;
 

@@ -104,6 +104,9 @@ uint32_t Device::max_draw_size() const {
 uint64_t Device::available_bytes() const {
     return implementation_->memory ? implementation_->memory->available_bytes() : max_buffer_bytes();
 }
+uint64_t Device::held_bytes() const {
+    return implementation_->memory ? implementation_->memory->held_bytes() : 0;
+}
 uint64_t Device::allocated_bytes(Purpose purpose) const {
     return implementation_->memory ? implementation_->memory->allocated_bytes(purpose) : 0;
 }

@@ -67,6 +67,8 @@ class Device {
     uint32_t resident_group_count() const;
     /// Device memory that can still be allocated.
     uint64_t available_bytes() const;
+    /// Device memory that this Device holds, whether buffers have it or not.
+    uint64_t held_bytes() const;
 
     uint64_t allocated_bytes(Purpose purpose) const;
     uint64_t peak_bytes(Purpose purpose) const;

@@ -66,6 +66,10 @@ uint32_t MemoryAllocator::choose_type(uint32_t type_bits, MemoryPlace place) con
     return *best;
 }
 
+uint32_t MemoryAllocator::device_heap() const {
+    return properties_.memoryTypes[choose_type(~0u, MemoryPlace::device)].heapIndex;
+}
+
 uint64_t MemoryAllocator::compute_available(uint32_t heap) const {
     const uint64_t size = properties_.memoryHeaps[heap].size;
     const uint64_t own = heap_bytes_[heap];
@@ -171,7 +175,12 @@ void MemoryAllocator::release(const MemorySpan& span) {
 
 uint64_t MemoryAllocator::available_bytes() const {
     const std::lock_guard lock(mutex_);
-    return compute_available(properties_.memoryTypes[choose_type(~0u, MemoryPlace::device)].heapIndex);
+    return compute_available(device_heap());
+}
+
+uint64_t MemoryAllocator::held_bytes() const {
+    const std::lock_guard lock(mutex_);
+    return heap_bytes_[device_heap()];
 }
 
 uint64_t MemoryAllocator::allocated_bytes(Purpose purpose) const {

@@ -49,11 +49,14 @@ class MemoryAllocator {
 
     /// Maximum bytes of one more allocation of device memory.
     uint64_t available_bytes() const;
+    /// Bytes of the blocks of device memory.
+    uint64_t held_bytes() const;
     uint64_t allocated_bytes(Purpose purpose) const;
     uint64_t peak_bytes(Purpose purpose) const;
 
   private:
     uint32_t choose_type(uint32_t type_bits, MemoryPlace place) const;
+    uint32_t device_heap() const;
     uint64_t compute_available(uint32_t heap) const;
     MemorySpan carve(std::list<MemoryBlock>::iterator block, uint64_t offset, const Request& request);
     std::list<MemoryBlock>::iterator add_block(uint32_t type, const Request& request);

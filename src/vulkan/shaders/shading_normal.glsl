@@ -20,7 +20,7 @@ vec3 compute_plain_normal(SurfaceData s, PatchCorners c, vec2 at) {
     bool is_upper = at.y > at.x && !is_polygon;
     vec3 first = c.corner[is_upper ? 2u : 1u].position - c.corner[0].position;
     vec3 second = c.corner[is_upper ? 3u : 2u].position - c.corner[0].position;
-    return make_plain_normal(blended, cross(first, second));
+    return make_plain_normal(blended, cross_exact(first, second));
 }
 
 SurfaceDerivative differentiate(VertexData a, VertexData b, VertexData c, VertexData d, float s) {
@@ -45,7 +45,7 @@ vec3 compute_displaced_normal(SurfaceData s, PatchCorners c, uint patch_index, u
         along_v.base = differentiate_base(s, c.quad, patch_index, at, 1u);
     }
     vec3 normal = make_unit(blend_normals(s, c.quad, at));
-    if (normal == vec3(0.0)) normal = make_unit(cross(along_u.base, along_v.base));
+    if (normal == vec3(0.0)) normal = make_unit(cross_exact(along_u.base, along_v.base));
     MapData map = maps[s.map];
     uint normal_level = choose_normal_level(c.mips, level);
     vec2 ends_u = find_ends(s, patch_index, normal_level, at.x, uvec2(3u, 1u));

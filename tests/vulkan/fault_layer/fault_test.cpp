@@ -61,6 +61,21 @@ TEST(SmallHeap, is_never_exceeded) {
     EXPECT_TRUE(device.validation_messages().empty());
 }
 
+TEST(SmallHeap, has_room_to_the_last_byte) {
+    const Device device({.is_validated = true});
+    std::vector<Buffer> buffers;
+    buffers.emplace_back(device, BufferConfig{.name = "first", .bytes = 5u << 20});
+    const uint64_t left = device.available_bytes() / 16 * 16;
+    ASSERT_LE(left + 16, device.max_buffer_bytes());
+    const Error error =
+        catch_error([&] { buffers.emplace_back(device, BufferConfig{.name = "last", .bytes = left + 16}); });
+    EXPECT_EQ(error.kind(), ErrorKind::out_of_memory);
+    expect_text(error, "last needs " + std::to_string(left + 16) + " bytes");
+    buffers.emplace_back(device, BufferConfig{.name = "fits", .bytes = left});
+    EXPECT_LT(device.available_bytes(), 16u);
+    EXPECT_TRUE(device.validation_messages().empty());
+}
+
 TEST(LostDevice, is_an_error_that_names_what_ran) {
     const Device device({.is_validated = true});
     const BindingTable bindings(device);

@@ -12,7 +12,8 @@ struct ExactResults {
     UintPair sobol;
     uint unit, cell, cell_column, cell_row, cell_is_upper;
     uint blend_quad, blend_cubic, filter_texels, decode_row, carried, moved,
-        lost; ///< bits of floats that decide topology
+        lost;      ///< bits of floats that decide topology
+    uint vanished; ///< of the area of a triangle of which two corners are one: 0
 };
 
 struct WarpResults {
@@ -134,6 +135,8 @@ FN ExactResults run_exact(FormulaInput from) {
     Vec3 a = {from.u[1], from.u[2], from.u[3]};
     Vec3 b = {1e3f * from.u[4], from.u[5], 1e-3f * from.u[6]};
     r.lost = floatBitsToUint(dot_exact(find_lost_by_subtraction(a, b, subtract_exact(a, b)), b));
+    Vec3 edge = subtract_exact(b, a);
+    r.vanished = floatBitsToUint(make_triangle_point(a, edge, edge, 1.0f, 0.5f).area_per_uv);
     return r;
 }
 
@@ -376,7 +379,9 @@ FN SourceResults run_source(FormulaInput from) {
     r.sun = draw_sun(make_test_source(from, kSourceSun), u);
     r.sun.distance = 0.0f; // infinite, which no difference can be taken of
     r.point_light = draw_point_light(point_light, position, u);
-    float pdf = emitter_density(0.1f + from.u[3], 0.5f + from.u[4], r.sun.direction, to);
+    // Seen from in front: of an edge-on surface the density is the reciprocal of a rounding error.
+    Vec3 facing = normalize(normalize(to) + r.sun.direction * 0.9f);
+    float pdf = emitter_density(0.1f + from.u[3], 0.5f + from.u[4], facing, to);
     r.emitter = draw_emitter(to, to, max(pdf, 0.1f));
     LightSourceData emitters = make_test_source(from, kSourceEmitters);
     r.irradiance = estimate_irradiance(point_light, position) + estimate_irradiance(emitters, position);
@@ -432,9 +437,11 @@ FN SurfaceResults run_surface(FormulaInput from) {
     r.plain = make_plain_normal(interpolate_triangle(a, b, c, at), point.normal);
     r.displaced = make_displaced_normal(displace_derivative_through(along_u, frame, a * 0.1f, frame.n),
                                         displace_derivative(along_v, frame.n), frame.n);
+    // In no special position: what is at right angles but for rounding is on either side.
+    Vec3 aside = square_to_sphere(at);
     Vec3 heights = make_triple(find_tangent_height(a - inside, frame.n, point.normal),
                                find_tangent_height(b - inside, normalize(b), point.normal),
-                               is_lost_light(frame.t, point.normal, frame.n) ? 1.0f : 0.0f);
+                               is_lost_light(aside, point.normal, frame.n) ? 1.0f : 0.0f);
     r.lift = blend_tangent_heights(heights, weigh_corners(place, 4.0f));
     return r;
 }
