@@ -27,7 +27,7 @@ vec2 find_opacity(HitData hit, inout MaterialData material) {
     vec2 factors = vec2(1.0);
     if (indices[0] != kNone || indices[1] != kNone) {
         SurfaceData s = surfaces[instance.surface];
-        vec2 uv = interpolate_uv(s, load_corners(s, hit.patch_index), vec2(hit.u, hit.v));
+        vec2 uv = interpolate_uv(s, load_quad(s, hit.patch_index), vec2(hit.u, hit.v));
         // A loop, so that the look-up is inlined only once.
         for (int k = 0; k < 2; ++k)
             if (indices[k] != kNone) factors[k] = fetch_texture(indices[k], uv).x;
@@ -39,9 +39,8 @@ vec2 find_opacity(HitData hit, inout MaterialData material) {
 /// Cosine of a ray to the geometric normal.
 float find_cosine(uint ray_index, HitData hit) {
     InstanceData instance = instances[hit.instance];
-    PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
     CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    CellPoint found = evaluate_cell(instance, hit.patch_index, hit.levels, place);
     return abs(dot(found.triangle.normal, rays[ray_index].direction));
 }
 

@@ -1,6 +1,6 @@
 // Computes the patch (u, v) of a hit. Re-evaluates the micro-triangle, because its tree may have been overwritten.
 #include "vulkan/shaders/kernel.glsl"
-#include "vulkan/shaders/patch_evaluation.glsl"
+#include "vulkan/shaders/sample_evaluation.glsl"
 #include "vulkan/shaders/rays.glsl"
 
 layout(constant_id = 1) const uint kIsBoxLeaf = 0;
@@ -8,13 +8,11 @@ layout(constant_id = 1) const uint kIsBoxLeaf = 0;
 layout(scalar, push_constant) uniform Push { CastPush push; };
 
 vec2 find_weights(SurfaceData s, HitData hit, ObjectRay ray, uvec2 cell, uint is_upper) {
-    PatchCorners corners = load_corners(s, hit.patch_index);
     vec3 p[3];
     for (uint k = 0u; k < 3u; ++k) {
         // Corners 00, 10, 11 of the lower triangle, 00, 11, 01 of the upper one.
         uvec2 corner = k == 0u ? uvec2(0u) : k == 1u ? uvec2(1u, is_upper) : uvec2(1u - is_upper, 1u);
-        p[k] = shear_vertex(ray, evaluate_sample(s, corners, hit.patch_index, hit.levels, cell.x + corner.x,
-                                                 cell.y + corner.y));
+        p[k] = shear_vertex(ray, find_sample(s, hit.patch_index, hit.levels, cell.x + corner.x, cell.y + corner.y));
     }
     TriangleHit found = intersect_sheared(ray, p[0], p[1], p[2], -kInfinity, kInfinity);
     return vec2(found.weight_b, found.weight_c);

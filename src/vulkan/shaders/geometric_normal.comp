@@ -11,8 +11,7 @@ void main() {
     HitData hit = hits[index];
     if (!is_hit(hit)) return;
     InstanceData instance = instances[hit.instance];
-    PatchCorners corners = load_corners(surfaces[instance.surface], hit.patch_index);
     CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    CellPoint found = evaluate_cell(instance, corners, hit.patch_index, hit.levels, place);
+    CellPoint found = evaluate_cell(instance, hit.patch_index, hit.levels, place);
     points[index].geometric_normal = found.triangle.normal;
 }

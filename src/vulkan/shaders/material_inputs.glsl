@@ -38,7 +38,7 @@ InputNumbers find_inputs(MaterialInputData inputs, InputNumbers numbers, vec2 uv
 /// `at`: on the patch of an instance.
 InputNumbers find_inputs_at(MaterialInputData inputs, InstanceData instance, uint patch_index, vec2 at) {
     SurfaceData s = surfaces[instance.surface];
-    return find_inputs(inputs, inputs.numbers, interpolate_uv(s, load_corners(s, patch_index), at));
+    return find_inputs(inputs, inputs.numbers, interpolate_uv(s, load_quad(s, patch_index), at));
 }
 
 #endif

@@ -1,6 +1,6 @@
 // Vertices of a wave of items: displaced vertices at the levels of camera rays, or polygon corners.
 #include "vulkan/shaders/kernel.glsl"
-#include "vulkan/shaders/patch_evaluation.glsl"
+#include "vulkan/shaders/sample_evaluation.glsl"
 #include "vulkan/shaders/raster.glsl"
 
 layout(scalar, set = 0, binding = kBindRasterVertices) writeonly buffer Vertices { vec3 raster_vertices[]; };
@@ -36,6 +36,6 @@ void main() {
     if (s.map == kNone)
         p = load_polygon_corner(s, item.patch_index, i, j);
     else
-        p = evaluate_vertex(s, item.patch_index, item.levels, i, j);
+        p = find_sample(s, item.patch_index, item.levels, i, j);
     raster_vertices[vertex] = p;
 }

@@ -86,19 +86,19 @@ vec3 apply_normal_map(MaterialData material, InstanceData instance, HitData hit,
 Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) {
     InstanceData instance = instances[hit.instance];
     SurfaceData s = surfaces[instance.surface];
-    PatchCorners corners = load_corners(s, hit.patch_index);
+    uvec4 quad = load_quad(s, hit.patch_index);
     vec2 at = vec2(hit.u, hit.v);
     uint level = packed_patch_level(hit.levels);
-    vec3 interpolated = compute_shading_normal(s, corners, hit.patch_index, level, at);
+    vec3 interpolated = compute_shading_normal(s, quad, hit.patch_index, level, at);
     vec3 normal = orient_shading_normal(transform_normal(instance.object_from_origin, interpolated), geometric_normal);
     Appearance appearance;
-    appearance.uv = interpolate_uv(s, corners, at);
+    appearance.uv = interpolate_uv(s, quad, at);
     MaterialData material = load_material_numbers(instance.material);
     apply_material(material, appearance);
     bool is_mapped = kHasNormalMaps != 0u && appearance.has_normal_texel;
     appearance.has_tangent = kHasAnisotropy != 0u && is_anisotropic(material);
     if (is_mapped || appearance.has_tangent)
-        appearance.tangent = find_tangent(instance, hit, corners.quad, normal);
+        appearance.tangent = find_tangent(instance, hit, quad, normal);
     if (is_mapped)
         normal = apply_normal_map(material, instance, hit, appearance.tangent, appearance.normal_texel, normal);
     appearance.shading_normal = is_flipped ? -normal : normal;

@@ -2,7 +2,7 @@
 #ifndef RELIEF_SURFACE_POINT_GLSL
 #define RELIEF_SURFACE_POINT_GLSL
 
-#include "vulkan/shaders/patch_evaluation.glsl"
+#include "vulkan/shaders/sample_evaluation.glsl"
 #include "formulas/warp.h"
 #include "formulas/surface_point.h"
 #include "formulas/local_start.h"
@@ -25,20 +25,16 @@ float bound_error(InstanceData instance, vec3 a, vec3 b, vec3 c, vec3 position) 
                                 share_of_place(instance.origin));
 }
 
-CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_index, uint packed_levels,
-                        CellPlace place) {
+CellPoint evaluate_cell(InstanceData instance, uint patch_index, uint packed_levels, CellPlace place) {
     SurfaceData s = surfaces[instance.surface];
+    uvec4 quad = load_quad(s, patch_index);
     vec3 corner[3];
     // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper; a loop inlines the evaluation once.
     for (uint k = 0u; k < 3u; ++k) {
         uint around = k + (place.is_upper && k > 0u ? 1u : 0u);
-        if (s.map == kNone) {
-            corner[k] = load_position(s, corners.quad[around]);
-            continue;
-        }
         uint i = place.i + (around == 1u || around == 2u ? 1u : 0u);
         uint j = place.j + (around >= 2u ? 1u : 0u);
-        corner[k] = evaluate_sample(s, corners, patch_index, packed_levels, i, j);
+        corner[k] = s.map == kNone ? load_position(s, quad[around]) : find_sample(s, patch_index, packed_levels, i, j);
     }
     float side = float(1u << packed_patch_level(packed_levels));
     AffineData m = instance.world_from_object;
@@ -47,7 +43,7 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
     point.triangle =
         make_triangle_point(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
                             transform_vector(m, corner[2] - corner[0]), (instance.levels & kMirrored) != 0u ? -1.0 : 1.0,
-                            triangle_uv_area(is_triangle(corners.quad), side));
+                            triangle_uv_area(is_triangle(quad), side));
     point.position_error = bound_error(instance, corner[0], corner[1], corner[2], point.triangle.position);
     return point;
 }
@@ -55,10 +51,10 @@ CellPoint evaluate_cell(InstanceData instance, PatchCorners corners, uint patch_
 /// Point (u, v) of a patch as rays with this LOD bias see it.
 CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint lod_bias) {
     uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), lod_bias);
-    PatchCorners corners = load_corners(surfaces[instance.surface], patch_index);
     uint side = 1u << packed_patch_level(packed_levels);
-    CellPlace place = locate_cell(is_triangle(corners.quad), side, uv.x, uv.y);
-    return evaluate_cell(instance, corners, patch_index, packed_levels, place);
+    bool is_polygon = is_triangle(load_quad(surfaces[instance.surface], patch_index));
+    CellPlace place = locate_cell(is_polygon, side, uv.x, uv.y);
+    return evaluate_cell(instance, patch_index, packed_levels, place);
 }
 
 #endif

@@ -11,14 +11,10 @@
 // In the variant of the kernel for scenes that have them: others are much smaller without.
 #ifdef HAS_TERMINATORS
 layout(constant_id = kTerminatorsConstant) const uint kTerminators = 0;
-#else
-const uint kTerminators = 0;
-#endif
 const uint kAllTerminators = 2u; ///< those of displaced patches too
 
 /// Detail finer than the cells, which normals alone have, says nothing of how far away the surface is.
 bool may_lift(HitData hit) {
-    if (kTerminators == 0u) return false;
     SurfaceData s = surfaces[instances[hit.instance].surface];
     if (s.first_frame == kNone) return false;
     return s.map == kNone || (kTerminators == kAllTerminators && !has_detail(load_mips(s, hit.patch_index)));
@@ -31,22 +27,22 @@ struct SmoothTriangle {
 };
 
 SmoothTriangle find_smooth_triangle(SurfaceData s, HitData hit) {
-    PatchCorners corners = load_corners(s, hit.patch_index);
+    uvec4 quad = load_quad(s, hit.patch_index);
     uint level = packed_patch_level(hit.levels);
     SmoothTriangle result;
     // A loop, so that the evaluation is inlined only once; the last turn is the point itself.
     for (uint k = 0u; k < 4u; ++k) {
         uint around = k + (cell_is_upper(hit.cell) != 0u && k > 0u ? 1u : 0u);
         if (s.map == kNone) {
-            if (k < 3u) result.corner[k] = load_position(s, corners.quad[around]);
-            result.normal[k] = k < 3u ? load_normal(s, corners.quad[around])
-                                      : compute_plain_normal(s, corners, vec2(hit.u, hit.v));
+            if (k < 3u) result.corner[k] = load_position(s, quad[around]);
+            result.normal[k] = k < 3u ? load_normal(s, quad[around])
+                                      : compute_plain_normal(s, quad, vec2(hit.u, hit.v));
         } else if (kTerminators == kAllTerminators) {
             uint i = cell_column(hit.cell) + (around == 1u || around == 2u ? 1u : 0u);
             uint j = cell_row(hit.cell) + (around >= 2u ? 1u : 0u);
-            if (k < 3u) result.corner[k] = evaluate_sample(s, corners, hit.patch_index, hit.levels, i, j);
+            if (k < 3u) result.corner[k] = find_sample(s, hit.patch_index, hit.levels, i, j);
             vec2 at = k < 3u ? vec2(i, j) * (1.0 / float(1u << level)) : vec2(hit.u, hit.v);
-            result.normal[k] = compute_displaced_normal(s, corners, hit.patch_index, level, at);
+            result.normal[k] = compute_displaced_normal(s, quad, hit.patch_index, level, at);
         }
     }
     return result;
@@ -55,7 +51,7 @@ SmoothTriangle find_smooth_triangle(SurfaceData s, HitData hit) {
 /// How far above the point the smooth surface lies from which light of that direction is seen; 0: it comes
 /// from above the triangle, or from below both.
 float find_light_lift(HitData hit, SurfacePointData point, vec3 direction) {
-    if (kTerminators == 0u || dot(direction, point.geometric_normal) > 0.0 || !may_lift(hit)) return 0.0;
+    if (dot(direction, point.geometric_normal) > 0.0 || !may_lift(hit)) return 0.0;
     InstanceData instance = instances[hit.instance];
     SmoothTriangle t = find_smooth_triangle(surfaces[instance.surface], hit);
     vec3 smooth_normal = orient_shading_normal(transform_normal(instance.object_from_origin, t.normal[3]),
@@ -71,5 +67,11 @@ float find_light_lift(HitData hit, SurfacePointData point, vec3 direction) {
                                          point.geometric_normal);
     return blend_tangent_heights(heights, weights);
 }
+
+#else
+const uint kTerminators = 0;
+bool may_lift(HitData hit) { return false; }
+float find_light_lift(HitData hit, SurfacePointData point, vec3 direction) { return 0.0; }
+#endif
 
 #endif

@@ -2,15 +2,16 @@
 #ifndef RELIEF_TEXTURE_PLACE_GLSL
 #define RELIEF_TEXTURE_PLACE_GLSL
 
-#include "vulkan/shaders/patch_evaluation.glsl"
+#include "vulkan/shaders/scene.glsl"
 #include "formulas/surface_point.h"
 
 /// `at`: on the patch.
-vec2 interpolate_uv(SurfaceData s, PatchCorners c, vec2 at) {
+vec2 interpolate_uv(SurfaceData s, uvec4 quad, vec2 at) {
     if (s.first_uv == kNone) return vec2(0.0);
     bool is_bilinear = s.map != kNone || s.has_bilinear_uvs != 0u;
-    return is_bilinear ? blend_patch_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at)
-                       : blend_polygon_uv(c.corner[0].uv, c.corner[1].uv, c.corner[2].uv, c.corner[3].uv, at);
+    vec2 uv[4] = {load_uv(s, quad.x), load_uv(s, quad.y), load_uv(s, quad.z), load_uv(s, quad.w)};
+    return is_bilinear ? blend_patch_uv(uv[0], uv[1], uv[2], uv[3], at)
+                       : blend_polygon_uv(uv[0], uv[1], uv[2], uv[3], at);
 }
 
 #endif
