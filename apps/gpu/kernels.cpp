@@ -64,6 +64,8 @@ Value make_common_value(const KernelProgram& program, const KernelFigure& figure
     const bool is_of_subgroup = value && is_same_name(figure.name, "Scratch size") &&
                                 figure.description.find("per subgroup") != std::string::npos;
     if (is_of_subgroup && program.subgroup_size > 0) return *value / program.subgroup_size;
+    // NVIDIA's driver 580 sets a bit above the 32 of the figure.
+    if (value && is_same_name(figure.name, "Local Memory Size")) return *value & 0xffffffffu;
     return make_value(figure);
 }
 

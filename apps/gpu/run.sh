@@ -84,12 +84,37 @@ run_part() {
 $(if [ -s "$file" ]; then cat "$file"; else echo null; fi)}"
 }
 
+# Several processes share the device: most of what tests take is compiling kernels. Each writes a list of its own.
+run_tests() {
+    jobs=$(nproc 2>/dev/null || echo 1)
+    [ "$jobs" -le 14 ] || jobs=14
+    pids=
+    for shard in $(seq 0 $((jobs - 1))); do
+        GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard "$logs/bin/vulkan_tests" \
+            --gtest_output="json:tests-$shard.json" >"tests-$shard.log" 2>&1 &
+        pids="$pids $!"
+    done
+    failed=0
+    for pid in $pids; do wait "$pid" || failed=1; done
+    cat tests-*.log
+    ls tests-*.json >/dev/null 2>&1 || return 1
+    {
+        echo '['
+        for shard in $(seq 0 $((jobs - 1))); do
+            [ "$shard" -eq 0 ] || echo ','
+            if [ -s "tests-$shard.json" ]; then cat "tests-$shard.json"; else echo null; fi
+        done
+        echo ']'
+    } >tests.json
+    return $failed
+}
+
 cd "$logs" || exit 1
 "$logs/bin/relief-gpu" devices >devices.json 2>devices.log
 for part in $(echo "$parts" | tr , ' '); do
     # $device, $quick and the further words are split into words, or nothing.
     case $part in
-    tests) run_part tests tests.json "$logs/bin/vulkan_tests" --gtest_output=json:tests.json ;;
+    tests) run_part tests tests.json run_tests ;;
     kernels) run_part kernels kernels.json "$logs/bin/relief-gpu" kernels -o kernels.json $device ;;
     parity) run_part parity parity.json "$logs/bin/relief-gpu" parity -o parity.json --pipeline-cache pipelines \
         $device $quick $parity_words ;;

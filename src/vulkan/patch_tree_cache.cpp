@@ -22,6 +22,7 @@ constexpr uint64_t kGrowth = 4;
 /// The most that a GPU begins with. Its driver makes memory ready much slower (45 ms a GB on an H100, driver
 /// 580) than trees are built there (0.8 ms), so that more pays only once very many were built again.
 constexpr uint64_t kFirstBytes = uint64_t(1) << 30;
+constexpr uint64_t kLeastBytesOfGpu = uint64_t(512) << 20;
 constexpr uint64_t kRebuildsBeforeGrowth = 32;
 
 /// A GPU has work for all its lanes only where the trees of a wave have room.
@@ -31,7 +32,7 @@ uint64_t choose_bytes(const Device& device, const PoolLimits& limits) {
     const uint64_t usual = is_kept ? kDefaultCacheBytes : kWorkingBytes;
     // Levels that several rays see differently, and tiles, take more than is known.
     const uint64_t expected = limits.tree_bytes + limits.tree_bytes / 8;
-    return device.is_cpu() ? usual : std::clamp(expected, usual, kFirstBytes);
+    return device.is_cpu() ? usual : std::clamp(expected, kLeastBytesOfGpu, kFirstBytes);
 }
 
 } // namespace

@@ -26,9 +26,11 @@ namespace {
 /// Depths of trees that take keys of 32 and of 64 bits.
 constexpr int kDepths[] = {int(scalar::kTrailLevels32), int(scalar::kTrailLevels64)};
 
-TracerConfig make_tracer_config() {
+/// `collected`: as TracerConfig has it, as the engine of a GPU does.
+TracerConfig make_tracer_config(uint32_t collected) {
     TracerConfig config;
     config.ray_capacity = 1u << 12, config.pair_capacity = 1u << 14;
+    config.collected = collected;
     return config;
 }
 
@@ -63,7 +65,12 @@ const std::map<uint32_t, std::string> kConstantNames = {
     {scalar::kShadowCatchersConstant, "shadow_catchers"},
     {scalar::kInputTexturesConstant, "input_textures"},
     {scalar::kGuidesConstant, "guides"},
-    {scalar::kAnisotropyConstant, "anisotropy"}};
+    {scalar::kAnisotropyConstant, "anisotropy"},
+    {scalar::kBicubicConstant, "bicubic"},
+    {scalar::kPolygonsConstant, "polygons"},
+    {scalar::kTilesConstant, "tiles"},
+    {scalar::kRayLodConstant, "ray_lod"},
+    {scalar::kCollectsConstant, "collects"}};
 
 /// Makes the objects that make kernels, case by case, and lists what was compiled.
 class KernelLister {
@@ -97,7 +104,8 @@ class KernelLister {
             begin_case(each.name, each.meaning);
             const auto scene = prepare_scene(std::move(each.scene), each.settings, SceneOrigin::camera);
             const DeviceScene device_scene(device, *scene);
-            Tracer tracer(device, *scene, device_scene, each.settings, make_tracer_config());
+            Tracer tracer(device, *scene, device_scene, each.settings,
+                          make_tracer_config(scalar::kMostCollected));
             const PathTracer paths(tracer, each.settings);
             const RayBatch rays(tracer);
             take(device);
@@ -112,7 +120,7 @@ class KernelLister {
             for (const int depth : kDepths) {
                 walk.kernel = find_walk_kernel(each.settings.experiment.traversal, depth);
                 const DeviceScene device_scene(device, *scene, &walk);
-                const Tracer tracer(device, *scene, device_scene, each.settings, make_tracer_config());
+                const Tracer tracer(device, *scene, device_scene, each.settings, make_tracer_config(0));
             }
             take(device);
         }
@@ -139,7 +147,7 @@ class KernelLister {
         const auto scene = prepare_scene(std::move(plain.scene), plain.settings);
         const DeviceScene device_scene(device, *scene);
         plain.settings.experiment.method = RenderMethod::fragment;
-        Tracer tracer(device, *scene, device_scene, plain.settings, make_tracer_config());
+        Tracer tracer(device, *scene, device_scene, plain.settings, make_tracer_config(0));
         Buffer vertices(device, {"vertices", RasterBuffers::kLeastVertexBytes});
         Buffer items(device, {"items", RasterBuffers::kLeastItemBytes});
         const Rasteriser rasteriser(tracer, {.vertices = &vertices, .items = &items});

@@ -117,8 +117,8 @@ const uint kGuidesConstant = 21u;
 const uint kAnisotropyConstant = 22u;
 // Of kernels that evaluate patches: not 0 where the base of a surface is bicubic.
 const uint kBicubicConstant = 23u;
-// Of kernels that walk the scene trees: 0 where no surface is without displacement; where no patch is above
-// level 5; where levels are those of the view.
+// Of kernels that walk the scene trees: not 0 where a surface has no displacement; where a patch is above
+// level 5; where each ray has its own levels.
 const uint kPolygonsConstant = 24u;
 const uint kTilesConstant = 25u;
 const uint kRayLodConstant = 26u;

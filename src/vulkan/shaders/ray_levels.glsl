@@ -6,7 +6,7 @@
 #include "formulas/lod.h"
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
-layout(constant_id = kRayLodConstant) const uint kHasRayLod = 1;
+layout(constant_id = kRayLodConstant) const uint kHasRayLod = 0;
 
 /// Packed levels of a patch of an instance for a ray.
 uint choose_levels(uint ray_index, uint instance_index, uint patch_index) {

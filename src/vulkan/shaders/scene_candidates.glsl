@@ -20,8 +20,8 @@ uint instance_index; ///< kNone: in world space
 float best_t;        ///< of the nearest polygon so far, which is in `hits`
 bool has_hit;
 
-layout(constant_id = kPolygonsConstant) const uint kHasPolygons = 1;
-layout(constant_id = kTilesConstant) const uint kHasTiles = 1;
+layout(constant_id = kPolygonsConstant) const uint kHasPolygons = 0;
+layout(constant_id = kTilesConstant) const uint kHasTiles = 0;
 
 layout(constant_id = kCollectsConstant) const uint kCollects = 0;
 

@@ -113,7 +113,8 @@ struct AllStructs {
     FIELD(s.begin) FIELD(s.end) FIELD(s.need) FIELD(s.coverage) FIELD(s.address) FIELD(s.ready_wave) \
     FIELD(s.build_wave)
 #define FIELDS_CAST_PUSH(s) \
-    FIELD(s.first) FIELD(s.count) FIELD(s.round) FIELD(s.slots) FIELD(s.is_any) FIELD(s.is_repeated) FIELD(s.wave) FIELD(s.pool_start) \
+    FIELD(s.first) FIELD(s.count) FIELD(s.round) FIELD(s.slots) FIELD(s.is_any) FIELD(s.is_collecting) \
+    FIELD(s.is_repeated) FIELD(s.wave) FIELD(s.pool_start) \
     FIELD(s.pool_budget) FIELD(s.pool_capacity) FIELD(s.is_cached) FIELD(s.root) FIELD(s.patch_count) \
     FIELD(s.directory_mask) FIELD(s.request_limit) FIELD(s.is_ray_lod) FIELD(s.pixel_angle) \
     FIELD(s.builds_stride) FIELD(s.visibility_mask)
