@@ -50,8 +50,9 @@ struct SurfaceSettings {
     LodRule lod = LodRule::field;
     BounceLevels bounce_levels = BounceLevels::automatic;
     LeafKind leaf = LeafKind::exact;
-    /// Limit of the patch tree cache; 0 disables it. Not given: kDefaultCacheBytes, and on the CPU engine up
-    /// to half of the memory that is available, while trees have to be built again for want of room.
+    /// Limit of the patch tree cache; 0 disables it. Not given: kDefaultCacheBytes, and while trees have to
+    /// be built again for want of room up to half of the memory that is available, on a GPU from 512 MiB up
+    /// to a quarter of its own.
     std::optional<size_t> cache_bytes;
 };
 

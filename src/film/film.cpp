@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "film/layer_kinds.h"
 #include "image/cryptomatte.h"
 #include "image/shadow_alpha.h"
 #include "math/vec.h"
@@ -19,94 +20,19 @@ namespace relief {
 
 namespace {
 
-enum class Source {
-    depth,
-    shading_normal,
-    camera_normal,
-    geometric_normal,
-    position,
-    albedo,
-    uv,
-    id,
-    samples,
-    variance,
-    cost,
-    shadow,
-    motion,
-    guide,
-    direct,
-    light_kind,
-    light_group,
-    objects,
-    materials
-};
-
-struct LayerKind {
-    const char* name;
-    Source source;
-    std::array<const char*, 3>
-        suffixes;     ///< of its channels; empty strings beyond the last one, and of mattes
-    size_t sum_count; ///< sums a pixel that it needs
-};
-
-constexpr LayerKind make_light_kind(size_t kind) {
-    return {kLightKinds[kind], Source::light_kind, {"R", "G", "B"}, 3};
-}
-
-// In the order in which the layers stand in a picture. docs/adding.md lists all that a layer takes.
-constexpr std::array<LayerKind, 27> kLayerKinds{{
-    {"depth", Source::depth, {"Z", "", ""}, 0},
-    {"N", Source::shading_normal, {"X", "Y", "Z"}, 3},
-    {"N_camera", Source::camera_normal, {"X", "Y", "Z"}, 3},
-    {"Ng", Source::geometric_normal, {"X", "Y", "Z"}, 3},
-    {"P", Source::position, {"X", "Y", "Z"}, 3},
-    {"albedo", Source::albedo, {"R", "G", "B"}, 3},
-    {"uv", Source::uv, {"X", "Y", ""}, 2},
-    {"id", Source::id, {"I", "", ""}, 0},
-    {"samples", Source::samples, {"Y", "", ""}, 0},
-    {"variance", Source::variance, {"R", "G", "B"}, 3},
-    {"cost", Source::cost, {"Y", "", ""}, 1},
-    {"shadow", Source::shadow, {"C", "L", "U"}, 3},
-    {kMotionLayer, Source::motion, {"X", "Y", ""}, 0},
-    {kDenoiserGuides[0], Source::guide, {"R", "G", "B"}, 3},
-    {kDenoiserGuides[1], Source::guide, {"X", "Y", "Z"}, 3},
-    {kDirectLayer, Source::direct, {"R", "G", "B"}, 3},
-    make_light_kind(0),
-    make_light_kind(1),
-    make_light_kind(2),
-    make_light_kind(3),
-    make_light_kind(4),
-    make_light_kind(5),
-    make_light_kind(6),
-    make_light_kind(7),
-    {"light_GROUP", Source::light_group, {"R", "G", "B"}, 3}, // one for each group
-    {kObjectMattes, Source::objects, {"", "", ""}, 0},
-    {kMaterialMattes, Source::materials, {"", "", ""}, 0},
-}};
-
-static_assert(kLightKinds.size() == 8);
-
 constexpr size_t kRadianceSums = 4;
 /// Radiance whose noise counts half: in the dark no relative error is ever small.
 constexpr double kDarkest = 0.01;
 
-/// Of the samples that hit; other means are of all samples.
-bool is_mean_of_hits(Source source) { return source == Source::position || source == Source::uv; }
-
 void check_layer(const std::string& name) {
     const auto is_named = [&](const LayerKind& kind) {
-        return kind.source == Source::light_group ? !find_group_of_layer(name).empty() : name == kind.name;
+        return kind.source == LayerSource::light_group ? !find_group_of_layer(name).empty()
+                                                       : name == kind.name;
     };
     if (std::ranges::any_of(kLayerKinds, is_named)) return;
     std::string known;
     for (const LayerKind& kind : kLayerKinds) known += std::string(known.empty() ? "" : ", ") + kind.name;
     throw Error(ErrorKind::usage, {"there is no layer \"" + name + "\"", "", "layers are " + known});
-}
-
-/// Whether Film::add_lights brings it.
-bool is_of_paths(Source source) {
-    return source == Source::guide || source == Source::direct || source == Source::light_kind ||
-           source == Source::light_group;
 }
 
 /// Light of all kinds that comes straight from lights to the first surface, or to the camera.
@@ -119,15 +45,9 @@ Vec3f sum_direct(std::span<const Vec3f> lights) {
 
 /// Which colour of Film::add_lights a layer is, other than those of groups and sums of kinds.
 size_t find_path_color(const LayerKind& kind, const LightLayers& layers) {
-    if (kind.source == Source::guide) return layers.first_guide() + (kind.name == kDenoiserGuides[1] ? 1 : 0);
+    if (kind.source == LayerSource::guide)
+        return layers.first_guide() + (kind.name == kDenoiserGuides[1] ? 1 : 0);
     return size_t(std::ranges::find(kLightKinds, std::string_view(kind.name)) - kLightKinds.begin());
-}
-
-bool is_matte(Source source) { return source == Source::objects || source == Source::materials; }
-
-size_t channel_count(const LayerKind& kind) {
-    if (is_matte(kind.source)) return 2 * kMatteRanks;
-    return size_t(std::ranges::count_if(kind.suffixes, [](const char* s) { return *s != 0; }));
 }
 
 template <class Real> void add_to(double* sums, const Vec3<Real>& v) {
@@ -136,37 +56,37 @@ template <class Real> void add_to(double* sums, const Vec3<Real>& v) {
     sums[2] += v.z;
 }
 
-void add_layer_sums(double* sums, Source source, const FilmSums& added) {
+void add_layer_sums(double* sums, LayerSource source, const FilmSums& added) {
     switch (source) {
-    case Source::shading_normal:
-    case Source::camera_normal:
+    case LayerSource::shading_normal:
+    case LayerSource::camera_normal:
         return add_to(sums, added.shading_normal);
-    case Source::geometric_normal:
+    case LayerSource::geometric_normal:
         return add_to(sums, added.geometric_normal);
-    case Source::albedo:
+    case LayerSource::albedo:
         return add_to(sums, added.albedo);
-    case Source::position:
+    case LayerSource::position:
         return add_to(sums, added.position);
-    case Source::uv:
+    case LayerSource::uv:
         sums[0] += added.uv.x, sums[1] += added.uv.y;
         return;
-    case Source::variance:
+    case LayerSource::variance:
         return add_to(sums, added.squares);
-    case Source::cost:
+    case LayerSource::cost:
         sums[0] += added.cost;
         return;
-    case Source::shadow:
+    case LayerSource::shadow:
         return add_to(sums, added.shadow);
-    case Source::depth:
-    case Source::id:
-    case Source::samples:
-    case Source::motion: // Film::set_motions
-    case Source::guide:  // Film::add_lights
-    case Source::direct:
-    case Source::light_kind:
-    case Source::light_group:
-    case Source::objects:
-    case Source::materials:
+    case LayerSource::depth:
+    case LayerSource::id:
+    case LayerSource::samples:
+    case LayerSource::motion: // Film::set_motions
+    case LayerSource::guide:  // Film::add_lights
+    case LayerSource::direct:
+    case LayerSource::light_kind:
+    case LayerSource::light_group:
+    case LayerSource::objects:
+    case LayerSource::materials:
         return;
     }
 }
@@ -178,22 +98,22 @@ double variance_of_mean(double sum, double sum_of_squares, uint32_t n) {
     return std::max(0.0, sum_of_squares / n - mean * mean) / (n - 1);
 }
 
-bool is_direction(Source source) {
-    return source == Source::shading_normal || source == Source::camera_normal ||
-           source == Source::geometric_normal;
+bool is_direction(LayerSource source) {
+    return source == LayerSource::shading_normal || source == LayerSource::camera_normal ||
+           source == LayerSource::geometric_normal;
 }
 
 /// Writes the sums of a layer, divided by n and made unit vectors where they are directions.
-void write_means(const double* sums, size_t count, uint32_t n, Source source, float* target) {
+void write_means(const double* sums, size_t count, uint32_t n, LayerSource source, float* target) {
     double divisor = n;
     if (is_direction(source)) divisor = std::sqrt(sums[0] * sums[0] + sums[1] * sums[1] + sums[2] * sums[2]);
     for (size_t k = 0; k < count; ++k) target[k] = divisor > 0 ? float(sums[k] / divisor) : 0.0f;
 }
 
 /// Turns what was summed in the world into what the layer is said to hold.
-void place_in_space(const PictureSpace& space, Source source, float* target) {
-    const bool is_moved = source == Source::position && space.origin != Vec3f{};
-    if (!is_moved && source != Source::camera_normal) return;
+void place_in_space(const PictureSpace& space, LayerSource source, float* target) {
+    const bool is_moved = source == LayerSource::position && space.origin != Vec3f{};
+    if (!is_moved && source != LayerSource::camera_normal) return;
     Vec3f v{target[0], target[1], target[2]};
     if (is_moved)
         v += space.origin;
@@ -233,16 +153,16 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
     if (window_ == Window{}) window_ = {0, 0, full_width, full_height};
     for (size_t k = 0; k < kLayerKinds.size(); ++k) {
         const LayerKind& kind = kLayerKinds[k];
-        if (kind.source == Source::light_group) {
+        if (kind.source == LayerSource::light_group) {
             for (size_t group = 0; group < light_layers_.groups.size(); ++group)
                 add_layer({k, stride_, false, light_layers_.kind_count() + group});
             continue;
         }
         const bool is_requested = std::find(layers.begin(), layers.end(), kind.name) != layers.end();
-        const bool is_needed = error == ErrorEstimate::on && kind.source == Source::variance;
+        const bool is_needed = error == ErrorEstimate::on && kind.source == LayerSource::variance;
         if (!is_requested && !is_needed) continue;
         if (is_needed) squares_offset_ = stride_;
-        if (kind.source == Source::shadow) shadow_offset_ = stride_;
+        if (kind.source == LayerSource::shadow) shadow_offset_ = stride_;
         add_layer({k, stride_, !is_requested, find_path_color(kind, light_layers_)});
     }
     allocate_sums();
@@ -261,7 +181,7 @@ void Film::allocate_sums() {
         const LayerKind& kind = kLayerKinds[layer.kind];
         if (!layer.is_hidden) channels += channel_count(kind);
         needs_hit_counts |= is_mean_of_hits(kind.source);
-        needs_nearest |= kind.source == Source::depth || kind.source == Source::id;
+        needs_nearest |= kind.source == LayerSource::depth || kind.source == LayerSource::id;
         matte_layers += is_matte(kind.source) ? 1 : 0;
     }
     const size_t pixels = size_t(window_.x1 - window_.x0) * size_t(window_.y1 - window_.y0);
@@ -273,8 +193,8 @@ void Film::allocate_sums() {
     if (needs_hit_counts) hit_counts_.resize(pixels);
     if (needs_nearest) depths_.resize(pixels, std::numeric_limits<float>::infinity()), ids_.resize(pixels);
     for (const Layer& layer : layers_) {
-        if (kLayerKinds[layer.kind].source == Source::objects) objects_.emplace(pixels);
-        if (kLayerKinds[layer.kind].source == Source::materials) materials_.emplace(pixels);
+        if (kLayerKinds[layer.kind].source == LayerSource::objects) objects_.emplace(pixels);
+        if (kLayerKinds[layer.kind].source == LayerSource::materials) materials_.emplace(pixels);
     }
 }
 
@@ -312,9 +232,9 @@ void Film::add_sample(int x, int y, const FilmSample& sample) {
 
 bool Film::needs_first_hits() const {
     const auto is_of_light = [](const Layer& layer) {
-        const Source source = kLayerKinds[layer.kind].source;
-        return is_of_paths(source) || source == Source::samples || source == Source::variance ||
-               source == Source::cost || source == Source::motion;
+        const LayerSource source = kLayerKinds[layer.kind].source;
+        return is_of_paths(source) || source == LayerSource::samples || source == LayerSource::variance ||
+               source == LayerSource::cost || source == LayerSource::motion;
     };
     return !depths_.empty() || !std::ranges::all_of(layers_, is_of_light);
 }
@@ -340,9 +260,10 @@ void Film::add_lights(int x, int y, std::span<const Vec3f> lights) {
     DCHECK(lights.size() == light_layers_.count());
     double* sums = sums_.data() + pixel_index(x, y) * stride_;
     for (const Layer& layer : layers_) {
-        const Source source = kLayerKinds[layer.kind].source;
+        const LayerSource source = kLayerKinds[layer.kind].source;
         if (!is_of_paths(source)) continue;
-        add_to(sums + layer.sum_offset, source == Source::direct ? sum_direct(lights) : lights[layer.light]);
+        add_to(sums + layer.sum_offset,
+               source == LayerSource::direct ? sum_direct(lights) : lights[layer.light]);
     }
 }
 
@@ -388,7 +309,7 @@ std::vector<std::string> Film::name_channels(const Layer& layer) const {
     const LayerKind& kind = kLayerKinds[layer.kind];
     if (is_matte(kind.source)) return name_matte_channels(kind.name);
     std::string name = kind.name;
-    if (kind.source == Source::light_group)
+    if (kind.source == LayerSource::light_group)
         name =
             std::string(kLightGroupPrefix) + light_layers_.groups[layer.light - light_layers_.kind_count()];
     std::vector<std::string> names;
@@ -401,38 +322,38 @@ void Film::write_layer(size_t pixel, const Layer& layer, const PictureSpace& spa
     const double* radiance_sums = sums_.data() + pixel * stride_;
     const double* sums = radiance_sums + layer.sum_offset;
     switch (kind.source) {
-    case Source::depth:
+    case LayerSource::depth:
         *target = depths_[pixel];
         return;
-    case Source::id:
+    case LayerSource::id:
         *target = float(ids_[pixel]);
         return;
-    case Source::samples:
+    case LayerSource::samples:
         *target = float(counts_[pixel]);
         return;
-    case Source::motion:
+    case LayerSource::motion:
         if (!motions_.empty()) target[0] = motions_[pixel].x, target[1] = motions_[pixel].y;
         return;
-    case Source::variance:
+    case LayerSource::variance:
         for (size_t c = 0; c < 3; ++c)
             target[c] = float(variance_of_mean(radiance_sums[c], sums[c], counts_[pixel]));
         return;
-    case Source::objects:
+    case LayerSource::objects:
         return objects_->write_ranks(pixel, counts_[pixel], target);
-    case Source::materials:
+    case LayerSource::materials:
         return materials_->write_ranks(pixel, counts_[pixel], target);
-    case Source::position:
-    case Source::uv:
-    case Source::shading_normal:
-    case Source::camera_normal:
-    case Source::geometric_normal:
-    case Source::albedo:
-    case Source::cost:
-    case Source::shadow:
-    case Source::guide:
-    case Source::direct:
-    case Source::light_kind:
-    case Source::light_group:
+    case LayerSource::position:
+    case LayerSource::uv:
+    case LayerSource::shading_normal:
+    case LayerSource::camera_normal:
+    case LayerSource::geometric_normal:
+    case LayerSource::albedo:
+    case LayerSource::cost:
+    case LayerSource::shadow:
+    case LayerSource::guide:
+    case LayerSource::direct:
+    case LayerSource::light_kind:
+    case LayerSource::light_group:
         const uint32_t n = is_mean_of_hits(kind.source) ? hit_counts_[pixel] : counts_[pixel];
         write_means(sums, kind.sum_count, n, kind.source, target);
         if (n > 0) place_in_space(space, kind.source, target);
@@ -459,7 +380,7 @@ Image Film::resolve(const PictureSpace& space) const {
         for (size_t p = begin; p < end; ++p) {
             float* target = image.pixels.data() + p * width;
             const double* sums = sums_.data() + p * stride_;
-            write_means(sums, kRadianceSums, counts_[p], Source::albedo, target);
+            write_means(sums, kRadianceSums, counts_[p], LayerSource::albedo, target);
             if (shadow_offset_ && counts_[p] > 0)
                 target[3] = float((sums[3] + sum_shadow_alpha(sums + *shadow_offset_)) / counts_[p]);
             target += kRadianceSums;
