@@ -1,6 +1,7 @@
 #include "vulkan/device_scene.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "bvh/tree_links.h"
@@ -256,14 +257,21 @@ void DeviceScene::add_walk(const SceneWalk& walk, Arrays& arrays) {
     node_count_ = arrays.nodes.size();
 }
 
+/// Instances that share levels are looked at once.
 void DeviceScene::add_tree_levels(const PreparedScene& scene) {
     constexpr uint8_t kNoTree = 0xff;
     std::vector<uint8_t> finest(patch_count_, kNoTree); // over the instances of a patch
+    std::set<std::pair<uint32_t, const LevelField*>> seen;
+    std::set<std::pair<uint32_t, uint32_t>> seen_uniform; // surface and packed levels
     for (const relief::Instance& instance : scene.instances) {
         const Surface& surface = scene.surfaces[instance.surface];
-        if (!surface.has_displacement) continue;
-        for (uint32_t patch = 0; patch < surface.patch_count(); ++patch) {
-            const auto level = uint8_t(scalar::packed_patch_level(instance.levels->packed_at(patch)));
+        const LevelField& levels = *instance.levels;
+        if (!surface.has_displacement || surface.patch_count() == 0) continue;
+        const bool is_new = levels.is_uniform()
+                                ? seen_uniform.insert({instance.surface, levels.packed_at(0)}).second
+                                : seen.insert({instance.surface, &levels}).second;
+        for (uint32_t patch = 0; is_new && patch < surface.patch_count(); ++patch) {
+            const auto level = uint8_t(scalar::packed_patch_level(levels.packed_at(patch)));
             uint8_t& known = finest[first_patch(instance.surface) + patch];
             if (known == kNoTree || known < level) known = level;
             tree_levels_ |= 1u << std::min<uint32_t>(level, scalar::kTreeLevels);

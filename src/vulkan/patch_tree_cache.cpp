@@ -1,5 +1,6 @@
 #include "vulkan/patch_tree_cache.h"
 #include "formulas/patch_tree.h"
+#include "relief/error.h"
 #include "relief/render.h"
 #include "vulkan/layout/bindings.h"
 #include "vulkan/layout/device_rays.h"
@@ -25,23 +26,32 @@ constexpr uint64_t kFirstBytes = uint64_t(1) << 30;
 constexpr uint64_t kLeastBytesOfGpu = uint64_t(512) << 20;
 constexpr uint64_t kRebuildsBeforeGrowth = 32;
 
-/// A GPU has work for all its lanes only where the trees of a wave have room.
-uint64_t choose_bytes(const Device& device, const PoolLimits& limits) {
-    const bool is_kept = limits.cap_bytes.value_or(1) > 0;
-    if (is_kept && limits.cap_bytes) return *limits.cap_bytes;
-    const uint64_t usual = is_kept ? kDefaultCacheBytes : kWorkingBytes;
-    // Levels that several rays see differently, and tiles, take more than is known.
-    const uint64_t expected = limits.tree_bytes + limits.tree_bytes / 8;
-    return device.is_cpu() ? usual : std::clamp(expected, kLeastBytesOfGpu, kFirstBytes);
-}
-
 } // namespace
 
-PatchTreeCache::PatchTreeCache(const Device& device, const PoolLimits& limits)
-    : device_(device), is_kept_(limits.cap_bytes.value_or(1) > 0), last_head_(limits.last_head) {
+/// A GPU has work for all its lanes only where the trees of a wave have room.
+PoolGrowth choose_pool_growth(const Device& device, const PoolLimits& limits) {
+    const bool is_kept = limits.cap_bytes.value_or(1) > 0;
     const uint64_t most = std::min(device.max_buffer_bytes(), device.available_bytes() / kDeviceShare);
-    if (!limits.cap_bytes && !device.is_cpu()) most_bytes_ = most;
-    make_pool(std::max(kLeastBytes, std::min(choose_bytes(device, limits), most)));
+    PoolGrowth growth;
+    growth.rebuilds = kRebuildsBeforeGrowth;
+    growth.budget_share = device.is_cpu() ? kBudgetShare : kBudgetShareOfGpu;
+    growth.first_bytes = is_kept ? limits.cap_bytes.value_or(kDefaultCacheBytes) : kWorkingBytes;
+    if (!device.is_cpu() && !(is_kept && limits.cap_bytes)) {
+        // Levels that several rays see differently, and tiles, take more than is known.
+        const uint64_t expected = limits.tree_bytes + limits.tree_bytes / 8;
+        growth.first_bytes = std::clamp(expected, kLeastBytesOfGpu, kFirstBytes);
+        growth.most_bytes = is_kept ? most : 0;
+    }
+    growth.first_bytes = std::max(kLeastBytes, std::min(growth.first_bytes, most));
+    return growth;
+}
+
+PatchTreeCache::PatchTreeCache(const Device& device, const PoolLimits& limits, const PoolGrowth& growth)
+    : device_(device),
+      is_kept_(limits.cap_bytes.value_or(1) > 0),
+      last_head_(limits.last_head),
+      growth_(growth) {
+    make_pool(growth.first_bytes);
 }
 
 void PatchTreeCache::make_pool(uint64_t bytes) {
@@ -52,16 +62,25 @@ void PatchTreeCache::make_pool(uint64_t bytes) {
 
 void PatchTreeCache::bind(BindingTable& bindings) const { bindings.bind(scalar::kBindPool, pool_); }
 
+/// Keeps its size where the device has no room for more, and does not try again.
 void PatchTreeCache::grow(Commands& commands, BindingTable& bindings) {
     commands.run(); // what was recorded may use the pool
-    make_pool(std::min(kGrowth * pool_.byte_count(), most_bytes_));
+    const uint64_t bytes = pool_.byte_count();
+    try {
+        make_pool(std::min(
+            {kGrowth * bytes, growth_.most_bytes, bytes + device_.available_bytes() / kDeviceShare}));
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::out_of_memory) throw;
+        growth_.most_bytes = bytes;
+        make_pool(bytes);
+    }
     built_units_ = 0;
     bind(bindings);
 }
 
 void PatchTreeCache::begin_chunk(const Buffer& trees, Commands& commands, BindingTable& bindings) {
-    const bool is_growing =
-        built_units_ > kRebuildsBeforeGrowth * capacity_ && pool_.byte_count() + kLeastBytes <= most_bytes_;
+    const bool is_growing = built_units_ > uint64_t(growth_.rebuilds) * capacity_ &&
+                            pool_.byte_count() + kLeastBytes <= growth_.most_bytes;
     if (head_ < last_head_ && !is_growing) return;
     if (is_growing) grow(commands, bindings);
     head_ = 0;
@@ -72,8 +91,7 @@ void PatchTreeCache::begin_chunk(const Buffer& trees, Commands& commands, Bindin
 /// it.
 uint32_t PatchTreeCache::find_budget() const {
     if (!is_kept_) return capacity_;
-    const uint32_t share = device_.is_cpu() ? kBudgetShare : kBudgetShareOfGpu;
-    return std::max(capacity_ / share, capacity_ - std::min(head_, capacity_));
+    return std::max(capacity_ / growth_.budget_share, capacity_ - std::min(head_, capacity_));
 }
 
 void PatchTreeCache::begin_wave(scalar::CastPush& push, const Buffer& counters, Commands& commands) {

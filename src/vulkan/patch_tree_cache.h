@@ -13,15 +13,28 @@ namespace relief::vulkan {
 
 /// What the pool of a cache may take.
 struct PoolLimits {
-    std::optional<uint64_t> cap_bytes; ///< 0: trees live for one wave; none: as much as a device can spare
+    std::optional<uint64_t> cap_bytes; ///< 0: trees live for one wave; none: choose_pool_growth() says
     uint64_t tree_bytes = 0;           ///< of the trees of all patches, as far as they are known
     uint32_t last_head = 1u << 31;     ///< after it addresses restart, trees are discarded
 };
 
+/// How a pool without a cap begins and grows.
+struct PoolGrowth {
+    uint64_t first_bytes = 0;
+    uint64_t most_bytes = 0;   ///< not above first_bytes: it does not grow
+    uint32_t rebuilds = 0;     ///< times its size that is built before it grows
+    uint32_t budget_share = 0; ///< a wave may overwrite 1 / budget_share of it
+};
+
+/// For a device with what it has free now.
+PoolGrowth choose_pool_growth(const Device& device, const PoolLimits& limits);
+
 /// Not thread safe.
 class PatchTreeCache {
   public:
-    PatchTreeCache(const Device& device, const PoolLimits& limits);
+    PatchTreeCache(const Device& device, const PoolLimits& limits)
+        : PatchTreeCache(device, limits, choose_pool_growth(device, limits)) {}
+    PatchTreeCache(const Device& device, const PoolLimits& limits, const PoolGrowth& growth);
 
     void bind(BindingTable& bindings) const;
 
@@ -34,6 +47,8 @@ class PatchTreeCache {
     /// Takes over `pool_head` after the wave.
     void end_wave(const scalar::CounterData& counters);
 
+    uint64_t byte_count() const { return pool_.byte_count(); }
+
   private:
     void make_pool(uint64_t bytes);
     void grow(Commands& commands, BindingTable& bindings);
@@ -43,7 +58,7 @@ class PatchTreeCache {
     Buffer pool_;
     bool is_kept_;
     uint32_t last_head_;
-    uint64_t most_bytes_ = 0;  ///< that the pool may grow to
+    PoolGrowth growth_;
     uint64_t built_units_ = 0; ///< since the pool was made
     uint32_t capacity_ = 0;    ///< units
     uint32_t head_ = 0;        ///< next address, units

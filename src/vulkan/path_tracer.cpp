@@ -177,11 +177,12 @@ void PathTracer::trace_samples(Film& film, std::span<const PixelRange> pixels, S
                                const std::function<void(uint64_t)>& on_samples) {
     DCHECK(!pixels.empty() && (!rasteriser_ || pixels.size() == 1));
     std::vector<uint32_t> listed = list_pixels(pixels);
-    const bool is_new = listed != pixels_;
-    pixels_ = std::move(listed);
-    DCHECK(pixels_.size() <= capacity_);
+    DCHECK(listed.size() <= capacity_);
     drawn_ = pixels.front();
-    if (is_new) pixel_list_.upload(pixels_);
+    if (listed != pixels_) {
+        pixel_list_.upload(listed);
+        pixels_ = std::move(listed);
+    }
     for (int k = 0; k < samples.count; k += kSamplesPerLaunch)
         trace_batch(film, {samples.first + k, std::min(kSamplesPerLaunch, samples.count - k)}, on_samples);
 }

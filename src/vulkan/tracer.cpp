@@ -28,6 +28,8 @@ namespace {
 using scalar::CastPush;
 using scalar::CounterData;
 
+static_assert(scalar::kMostCollected < (1u << (32 - scalar::kCellBits)));
+
 constexpr uint32_t kPairCountWord = offsetof(CounterData, pair_count) / sizeof(uint32_t);
 
 /// Bounces may see coarser trees. A ray of a later round needs room for all its candidates.
@@ -36,6 +38,12 @@ TracerConfig complete_config(TracerConfig config, const PreparedScene& scene,
     config.may_see_coarser |= make_bounce_lod(scene, settings).cell_angle > 0;
     config.pair_capacity = std::max({config.pair_capacity, scalar::kMostSlots, config.collected});
     return config;
+}
+
+PatchTreeCache make_cache(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
+                          const TracerConfig& config) {
+    const PoolLimits limits{settings.surface.cache_bytes, scene.tree_bytes(), config.pool_restart_units};
+    return {device, limits, config.pool_growth ? *config.pool_growth : choose_pool_growth(device, limits)};
 }
 
 /// Totals over the whole render.
@@ -56,7 +64,7 @@ struct Tracer::Implementation {
           bindings(d),
           commands(d, bindings),
           directories(d, s, ds),
-          cache(d, {settings.surface.cache_bytes, ds.tree_bytes(), c.pool_restart_units}),
+          cache(make_cache(d, ds, settings, c)),
           sort(d),
           buffers(d, config, sort.histogram_words(config.pair_capacity)),
           kernels(d, ds, settings, config, ds.stack_size() + directories.stack_size()) {

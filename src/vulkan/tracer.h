@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "prepare/prepared_scene.h"
 #include "relief/render.h"
 #include "vulkan/device/commands.h"
 #include "vulkan/device_scene.h"
 #include "vulkan/layout/device_rays.h"
+#include "vulkan/patch_tree_cache.h"
 
 namespace relief::vulkan {
 
@@ -22,6 +24,7 @@ struct TracerConfig {
     uint32_t pair_capacity =
         1u << 22; ///< capacity for pairs of ray and patch, >= slots; a smaller one means more chunks of rays
     uint32_t pool_restart_units = 1u << 31; ///< units of trees built, after which the pool discards all trees
+    std::optional<PoolGrowth> pool_growth;  ///< of the pool of trees; not given: choose_pool_growth()
     uint32_t fused_group_count = 0;    ///< persistent groups of the fused form; 0: enough to fill the device
     uint32_t fused_jobs_per_group = 0; ///< trees per group and launch; 0: as many as are safe
     bool may_see_coarser = false;      ///< rays may have an LOD bias, beside the bounces of a render

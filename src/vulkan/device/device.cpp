@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -44,7 +45,7 @@ void Device::Implementation::submit_and_wait(const vk::raii::CommandBuffer& comm
         const auto begin = std::chrono::steady_clock::now();
         while (!shared->description.is_cpu && fence.getStatus() == vk::Result::eNotReady &&
                std::chrono::steady_clock::now() - begin < kLongestSpin)
-            ;
+            std::this_thread::yield();
         const uint64_t forever = std::numeric_limits<uint64_t>::max();
         static_cast<void>(shared->device.waitForFences(*fence, true, forever));
         shared->device.resetFences(*fence);

@@ -65,7 +65,7 @@ FN uint hash_directory(uint patch_number, uint levels) {
 
 /// Maximum candidates that a ray offers per round, and in one that collects.
 const uint kMostSlots = 8u;
-const uint kMostCollected = 128u;
+const uint kMostCollected = 127u; // with kCellBits, a rank and a cell are never all ones
 
 /// The tree of the first candidate, which is none, of a ray that had more than it may collect.
 const uint kOverflown = 0xfffffffeu;

@@ -155,7 +155,7 @@ vec3 blend_vector_inside(uint word, vec2 at) {
 
 bool needs_frame(SurfaceData s) { return s.map != kNone && maps[s.map].is_tangent != 0u; }
 
-/// Attributes at `at` inside a patch, as blend_corners() has them.
+/// Attributes at `at` inside a patch.
 VertexData evaluate_inside(BuildJob job, SurfaceData s, uvec4 quad, vec2 at) {
     uint word = slot_word(job, 0u);
     VertexData base;
@@ -177,7 +177,7 @@ vec3 blend_vector_along(uint first, uint second, float s) {
     return blend_vectors(read_slot_vector(first), read_slot_vector(second), s);
 }
 
-/// Attributes on the boundary of a patch, as evaluate_place() has them. The ends of `place` are slots.
+/// Attributes on the boundary of a patch. The ends of `place` are slots.
 VertexData evaluate_along(BuildJob job, SurfaceData s, uvec4 quad, LinePlace place) {
     uint first = slot_word(job, place.first);
     uint second = slot_word(job, place.second);
@@ -219,7 +219,7 @@ LinePlace place_on_boundary(BuildJob job, uint i, uint j) {
                      control + (is_reversed ? 1u : 0u), control + (is_reversed ? 0u : 1u), kMipEdges + edge);
 }
 
-/// Sample (i, j) of the tree, as evaluate_sample() has it.
+/// Sample (i, j) of the tree, as find_sample() of sample_evaluation.glsl has it.
 vec3 evaluate_tree_sample(BuildJob job, SurfaceData s, uvec4 quad, uint mips, uint i, uint j) {
     i += job.cell_x;
     j += job.cell_y;

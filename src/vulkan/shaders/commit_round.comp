@@ -11,15 +11,16 @@ CandidateData find_ranked(uint place, uint rank) {
     uint count = 0u;
     while (count < push.slots && candidates[first + count].instance != kNone) ++count;
     for (uint k = 0u; k < count; ++k) {
-        CandidateData candidate = candidates[first + k];
+        uint instance = candidates[first + k].instance;
+        uint patch_index = candidates[first + k].patch_index;
         uint before = 0u;
-        for (uint other = 0u; other < count; ++other) {
-            CandidateData o = candidates[first + other];
-            if (o.instance < candidate.instance ||
-                (o.instance == candidate.instance && o.patch_index < candidate.patch_index))
+        for (uint other = first; other < first + count; ++other) {
+            uint other_instance = candidates[other].instance;
+            if (other_instance < instance ||
+                (other_instance == instance && candidates[other].patch_index < patch_index))
                 ++before;
         }
-        if (before == rank) return candidate;
+        if (before == rank) return candidates[first + k];
     }
     return candidates[first];
 }

@@ -110,44 +110,6 @@ vec3 blend_quad_vectors(vec3 a, vec3 b, vec3 c, vec3 d, float u, float v) {
                 blend_quad(a.z, b.z, c.z, d.z, u, v));
 }
 
-VertexData blend_line(VertexData a, VertexData b, float s) {
-    VertexData result;
-    result.position = blend_vectors(a.position, b.position, s);
-    result.uv = vec2(blend(a.uv.x, b.uv.x, s), blend(a.uv.y, b.uv.y, s));
-    result.t = blend_vectors(a.t, b.t, s);
-    result.b = blend_vectors(a.b, b.b, s);
-    result.n = blend_vectors(a.n, b.n, s);
-    result.tile = a.tile;
-    return result;
-}
-
-/// The four corners of a patch, its own vertices.
-struct PatchCorners {
-    uvec4 quad;
-    uint mips; ///< packed
-    VertexData corner[4];
-};
-
-PatchCorners load_corners(SurfaceData s, uint patch_index) {
-    PatchCorners corners;
-    corners.quad = load_quad(s, patch_index);
-    corners.mips = load_mips(s, patch_index);
-    for (uint k = 0u; k < 4u; ++k) corners.corner[k] = load_vertex(s, corners.quad[k]);
-    return corners;
-}
-
-VertexData blend_corners(VertexData c0, VertexData c1, VertexData c2, VertexData c3, float u, float v) {
-    VertexData result;
-    result.position = blend_quad_vectors(c0.position, c1.position, c2.position, c3.position, u, v);
-    result.uv = vec2(blend_quad(c0.uv.x, c1.uv.x, c2.uv.x, c3.uv.x, u, v),
-                     blend_quad(c0.uv.y, c1.uv.y, c2.uv.y, c3.uv.y, u, v));
-    result.t = blend_quad_vectors(c0.t, c1.t, c2.t, c3.t, u, v);
-    result.b = blend_quad_vectors(c0.b, c1.b, c2.b, c3.b, u, v);
-    result.n = blend_quad_vectors(c0.n, c1.n, c2.n, c3.n, u, v);
-    result.tile = c0.tile;
-    return result;
-}
-
 layout(constant_id = kBicubicConstant) const uint kHasBicubic = 0;
 
 bool is_bicubic(SurfaceData s) { return kHasBicubic != 0u && s.first_control != kNone; }
@@ -225,14 +187,6 @@ EdgeLine find_edge_line(SurfaceData s, uvec4 quad, uint patch_index, uint edge) 
     return EdgeLine(first, second, false);
 }
 
-/// One bit per edge whose line runs against the patch's winding.
-uint find_reversed_edges(SurfaceData s, uvec4 quad, uint patch_index) {
-    uint reversed = 0u;
-    for (uint edge = 0u; edge < 4u; ++edge)
-        if (find_edge_line(s, quad, patch_index, edge).is_reversed) reversed |= 1u << edge;
-    return reversed;
-}
-
 /// A boundary sample: the ends of a line and the position between. Corners use their dominant vertex only.
 struct LinePlace {
     uint first, second;
@@ -261,51 +215,9 @@ LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint pack
                      control + (line.is_reversed ? 0u : 1u), kMipEdges + edge);
 }
 
-/// A boundary sample before displacement.
-VertexData evaluate_place(SurfaceData s, uvec4 quad, uint patch_index, LinePlace place) {
-    VertexData first = load_vertex(s, place.first);
-    VertexData second = load_vertex(s, place.second);
-    VertexData base = blend_line(first, second, place.s);
-    if (is_bicubic(s) && place.control != kNone)
-        base.position = blend_cubic_vectors(first.position, load_control(s, quad, patch_index, place.control),
-                                            load_control(s, quad, patch_index, place.end_control), second.position,
-                                            weigh_cubic(place.s));
-    return base;
-}
-
 bool is_on_boundary(uint packed_levels, uint i, uint j) {
     uint n = 1u << packed_patch_level(packed_levels);
     return i == 0u || j == 0u || i == n || j == n;
-}
-
-/// The place of a sample for which is_on_boundary holds.
-LinePlace find_boundary_place(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uint i, uint j) {
-    uint level = packed_patch_level(packed_levels);
-    uint n = 1u << level;
-    if ((i == 0u || i == n) && (j == 0u || j == n))
-        return find_corner(s, quad, j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u));
-    return find_edge_place(s, quad, patch_index, packed_levels, uvec3(i, j, find_sample_edge(i, j, level)));
-}
-
-/// Sample (i, j) of a patch with loaded corners.
-vec3 evaluate_sample(SurfaceData s, PatchCorners c, uint patch_index, uint packed_levels, uint i, uint j) {
-    VertexData base;
-    uint mip_place = kMipInside;
-    if (is_on_boundary(packed_levels, i, j)) {
-        LinePlace place = find_boundary_place(s, c.quad, patch_index, packed_levels, i, j);
-        base = evaluate_place(s, c.quad, patch_index, place);
-        mip_place = place.mip_place;
-    } else {
-        float cell = 1.0 / float(1u << packed_patch_level(packed_levels));
-        base = blend_corners(c.corner[0], c.corner[1], c.corner[2], c.corner[3], float(i) * cell, float(j) * cell);
-        if (is_bicubic(s)) base.position = evaluate_base(s, c.quad, patch_index, float(i) * cell, float(j) * cell);
-    }
-    return displace(s, base, packed_mip(c.mips, mip_place));
-}
-
-/// Sample (i, j) of a patch at its levels, object space: the definition of the surface.
-vec3 evaluate_vertex(SurfaceData s, uint patch_index, uint packed_levels, uint i, uint j) {
-    return evaluate_sample(s, load_corners(s, patch_index), patch_index, packed_levels, i, j);
 }
 
 #endif

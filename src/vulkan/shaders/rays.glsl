@@ -25,11 +25,12 @@ layout(scalar, set = 0, binding = kBindBuilds) buffer Builds { uint builds[]; };
 #ifdef FULL_SCREEN
 #define COUNT(counter) atomicAdd(counter, 1u)
 #else
-#define COUNT(counter)                                                        \
-    {                                                                         \
-        uint counted = subgroupBallotBitCount(subgroupBallot(true));          \
-        if (subgroupElect()) atomicAdd(counter, counted);                     \
-    }
+#define COUNT(counter) \
+    do { \
+        uvec4 counted = subgroupBallot(true); \
+        if (gl_SubgroupInvocationID == subgroupBallotFindLSB(counted)) \
+            atomicAdd(counter, subgroupBallotBitCount(counted)); \
+    } while (false)
 #endif
 
 ObjectRay enter_object(RayData ray, InstanceData instance) {

@@ -205,6 +205,7 @@ void emit_slots(bool is_none) {
     for (uint k = 0u; k < kMostSlots; ++k) {
         if (k + push.slots >= kMostSlots) {
             candidates[candidate].instance = kNone;
+            candidates[candidate].tree = 0u;
             if (count > 0u && slots[k].tree != kNone) {
                 candidates[candidate] = CandidateData(slots[k].instance, slots[k].tree, 0u, 0u, slots[k].entry);
                 pairs[pair] = uvec2(slots[k].tree, candidate);
@@ -222,7 +223,7 @@ void emit_collected(bool is_none) {
     uint pair = take_pairs(count);
     for (uint k = 0u; k < count; ++k) pairs[pair + k] = uvec2(candidates[first_candidate + k].tree, first_candidate + k);
     if (count < push.slots) candidates[first_candidate + count].instance = kNone;
-    if (is_overflown && !is_none) candidates[first_candidate].tree = kOverflown;
+    if (count == 0u) candidates[first_candidate].tree = is_overflown && !is_none ? kOverflown : 0u;
 }
 
 void emit_candidates(bool is_done) {
