@@ -104,7 +104,10 @@ TEST_F(PipelineCaches, that_are_damaged_are_ignored_and_replaced) {
           std::vector<char>(good.begin(), good.begin() + std::ptrdiff_t(good.size() - 1))}) {
         write(data);
         EXPECT_TRUE(run_with_cache(path_));
-        EXPECT_EQ(read_file(path_).size(), good.size());
+        const std::vector<char> replaced = read_file(path_);
+        EXPECT_NE(replaced, data);
+        EXPECT_TRUE(run_with_cache(path_));
+        EXPECT_EQ(read_file(path_), replaced) << "it does not serve";
     }
 }
 
