@@ -51,8 +51,8 @@ struct SurfaceSettings {
     BounceLevels bounce_levels = BounceLevels::automatic;
     LeafKind leaf = LeafKind::exact;
     /// Limit of the patch tree cache; 0 disables it. Not given: kDefaultCacheBytes, and while trees have to
-    /// be built again for want of room up to half of the memory that is available, on a GPU from 512 MiB up
-    /// to a quarter of its own.
+    /// be built again for want of room up to half of the memory that is available. On a GPU: from 512 MiB to
+    /// 1 GiB, and then up to a quarter of what it has free.
     std::optional<size_t> cache_bytes;
 };
 
