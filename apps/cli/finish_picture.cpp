@@ -31,7 +31,8 @@ void print_summary(const RenderResult& result, const RenderSettings& settings) {
     fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
                s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
     fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n",
-               settings.image.width, settings.image.height, result.is_complete ? "" : "up to ",
+               settings.image.width, settings.image.height,
+               result.whole_samples == settings.image.spp ? "" : fmt::format("{} to ", result.whole_samples),
                settings.image.spp, rays, s.render_s, s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
     fmt::print(stderr, "read in {:.3f} s, prepared in {:.3f} s\n", s.load_s, s.prepare_s);
     fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
@@ -99,7 +100,12 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     fmt::print("wrote {}\n", saved.file.string());
     std::fflush(stdout); // the sender of edits waits for it
     if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
-    if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
+    if (!result.is_complete)
+        fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
+    else if (!options.progress.is_quiet && !has_all_samples(result, settings))
+        fmt::print(stderr,
+                   "relief: the time limit ended the render: each pixel has at least {} of {} samples\n",
+                   result.whole_samples, settings.image.spp);
     const int exit_code = get_exit_code(result, saved);
     return exit_code != kExitDone ? exit_code : denoised;
 }

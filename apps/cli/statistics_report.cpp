@@ -51,6 +51,12 @@ Value make_casts(const Statistics& s) {
 
 } // namespace
 
+bool has_all_samples(const RenderResult& result, const RenderSettings& settings) {
+    const double limit_s = settings.image.time_limit_s;
+    const bool is_out_of_time = limit_s > 0 && result.statistics.render_s >= limit_s;
+    return result.is_complete && !(is_out_of_time && result.whole_samples < settings.image.spp);
+}
+
 Value describe_statistics(const RenderResult& result, const RenderSettings& settings) {
     const Statistics& s = result.statistics;
     Value root;
@@ -62,7 +68,7 @@ Value describe_statistics(const RenderResult& result, const RenderSettings& sett
                      {"bounces", settings.image.bounces},
                      {"clamp_indirect", settings.image.clamp_indirect},
                      {"whole_samples", result.whole_samples},
-                     {"is_complete", result.is_complete}};
+                     {"is_complete", has_all_samples(result, settings)}};
     root["scene"] = {{"meshes", s.meshes},
                      {"instances", s.instances},
                      {"patches", s.patches},

@@ -55,7 +55,10 @@ TEST_F(Checkpoint, tells_which_samples_of_an_unfinished_pass_stay) {
             render_large({"--spp", "4096", "--threads", "1", "--time-limit", std::to_string(0.1 * k),
                           "--checkpoint", "5", "-o", "a.exr", "--stats", "s.json"});
         ASSERT_EQ(part.exit_code, 0) << part.errors;
-        whole = nlohmann::json::parse(read("s.json"))["image"]["whole_samples"];
+        const nlohmann::json image = nlohmann::json::parse(read("s.json"))["image"];
+        whole = image["whole_samples"];
+        ASSERT_LT(whole, 4096);
+        EXPECT_EQ(image["is_complete"], false);
         most = std::stoi(read_image(folder_ / "a.exr").metadata.at("relief:samples").substr(2));
     }
     ASSERT_GE(most, whole + 2);
@@ -66,6 +69,19 @@ TEST_F(Checkpoint, tells_which_samples_of_an_unfinished_pass_stay) {
     const CommandResult all = render_large({"--spp", std::to_string(most), "--resume", "a.exr"});
     EXPECT_EQ(all.exit_code, 0);
     EXPECT_EQ(all.errors.find("unfinished pass"), std::string::npos) << all.errors;
+}
+
+TEST_F(Checkpoint, says_that_a_time_limit_ended_a_render) {
+    const CommandResult cut = run({"render", "plane.obj", "--size", "640x480", "--bounces", "1", "--spp",
+                                   "4096", "--time-limit", "0.1", "-v", "-o", "a.exr"});
+    EXPECT_EQ(cut.exit_code, 0) << cut.errors;
+    EXPECT_NE(cut.errors.find("the time limit ended the render: each pixel has at least "), std::string::npos)
+        << cut.errors;
+    EXPECT_NE(cut.errors.find(" to 4096 samples, "), std::string::npos) << cut.errors;
+    EXPECT_EQ(run({"render", "plane.obj", "--size", "32x32", "--bounces", "1", "--spp", "2", "--time-limit",
+                   "600", "-o", "b.exr"})
+                  .errors.find("the time limit ended"),
+              std::string::npos);
 }
 
 TEST_F(Checkpoint, tells_what_cannot_be_gone_on_with) {
