@@ -206,17 +206,12 @@ LinePlace place_at_corner(uint corner) {
 
 /// As find_corner() and find_edge_place() have it, with slots in place of vertices.
 LinePlace place_on_boundary(BuildJob job, uint i, uint j) {
-    uint level = packed_patch_level(job.levels);
-    uint n = 1u << level;
-    uint edge = find_sample_edge(i, j, level);
-    if (edge == 4u) return place_at_corner(j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u));
-    bool is_reversed = ((job.reversed >> edge) & 1u) != 0u;
-    uint k = move_line_sample(find_line_sample(i, j, level, edge, is_reversed),
-                              level - packed_edge_level(job.levels, edge));
-    if (k == 0u || k == n) return place_at_corner((k == 0u) == is_reversed ? (edge + 1u) & 3u : edge);
-    uint control = 4u + 2u * edge;
-    return LinePlace(kLineSlot + 2u * edge, kLineSlot + 2u * edge + 1u, float(k) * (1.0 / float(n)),
-                     control + (is_reversed ? 1u : 0u), control + (is_reversed ? 0u : 1u), kMipEdges + edge);
+    uint edge = find_sample_edge(i, j, packed_patch_level(job.levels));
+    if (edge == 4u) return place_at_corner(find_grid_corner(i, j));
+    EdgeSample moved = snap_edge_sample(job.levels, uvec3(i, j, edge), ((job.reversed >> edge) & 1u) != 0u);
+    if (moved.corner != kNone) return place_at_corner(moved.corner);
+    return LinePlace(kLineSlot + 2u * edge, kLineSlot + 2u * edge + 1u, moved.s, moved.control, moved.end_control,
+                     kMipEdges + edge);
 }
 
 /// Sample (i, j) of the tree, as find_sample() of sample_evaluation.glsl has it.

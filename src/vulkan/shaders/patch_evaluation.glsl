@@ -201,18 +201,35 @@ LinePlace find_corner(SurfaceData s, uvec4 quad, uint k) {
     return LinePlace(vertex, vertex, 0.0, kNone, kNone, kMipCorners + k);
 }
 
-/// A sample of edge i_j_edge.z, not a corner, before snapping.
-LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uvec3 i_j_edge) {
+/// Corner of a grid of n x n cells that sample (i, j) is.
+uint find_grid_corner(uint i, uint j) { return j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u); }
+
+/// A sample of an edge after snapping.
+struct EdgeSample {
+    uint corner; ///< of the patch that it falls on; kNone: it lies between
+    float s;     ///< along the line
+    uint control, end_control; ///< as in LinePlace
+};
+
+/// Of sample i_j_edge.xy of edge i_j_edge.z, not a corner: the one rule that neighbours agree by.
+EdgeSample snap_edge_sample(uint packed_levels, uvec3 i_j_edge, bool is_reversed) {
     uint level = packed_patch_level(packed_levels);
     uint n = 1u << level;
     uint edge = i_j_edge.z;
-    EdgeLine line = find_edge_line(s, quad, patch_index, edge);
-    uint k = move_line_sample(find_line_sample(i_j_edge.x, i_j_edge.y, level, edge, line.is_reversed),
+    uint k = move_line_sample(find_line_sample(i_j_edge.x, i_j_edge.y, level, edge, is_reversed),
                               level - packed_edge_level(packed_levels, edge));
-    if (k == 0u || k == n) return find_corner(s, quad, (k == 0u) == line.is_reversed ? (edge + 1u) & 3u : edge);
+    uint corner = k != 0u && k != n ? kNone : (k == 0u) == is_reversed ? (edge + 1u) & 3u : edge;
     uint control = 4u + 2u * edge;
-    return LinePlace(line.first, line.second, float(k) * (1.0 / float(n)), control + (line.is_reversed ? 1u : 0u),
-                     control + (line.is_reversed ? 0u : 1u), kMipEdges + edge);
+    return EdgeSample(corner, float(k) * (1.0 / float(n)), control + (is_reversed ? 1u : 0u),
+                      control + (is_reversed ? 0u : 1u));
+}
+
+/// A sample of edge i_j_edge.z, not a corner, before snapping.
+LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uvec3 i_j_edge) {
+    EdgeLine line = find_edge_line(s, quad, patch_index, i_j_edge.z);
+    EdgeSample moved = snap_edge_sample(packed_levels, i_j_edge, line.is_reversed);
+    if (moved.corner != kNone) return find_corner(s, quad, moved.corner);
+    return LinePlace(line.first, line.second, moved.s, moved.control, moved.end_control, kMipEdges + i_j_edge.z);
 }
 
 bool is_on_boundary(uint packed_levels, uint i, uint j) {

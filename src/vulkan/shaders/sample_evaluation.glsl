@@ -114,7 +114,7 @@ SamplePlace place_sample(SurfaceData s, uvec4 quad, uint patch_index, uint packe
     bool is_on_u_edge = j == 0u || j == n;
     bool is_on_v_edge = i == 0u || i == n;
     if (is_on_u_edge && is_on_v_edge)
-        return make_line_place(find_corner(s, quad, j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u)));
+        return make_line_place(find_corner(s, quad, find_grid_corner(i, j)));
     if (is_on_u_edge || is_on_v_edge)
         return make_line_place(
             find_edge_place(s, quad, patch_index, packed_levels, uvec3(i, j, find_sample_edge(i, j, level))));
@@ -122,7 +122,7 @@ SamplePlace place_sample(SurfaceData s, uvec4 quad, uint patch_index, uint packe
     return SamplePlace(quad, vec2(float(i) * cell, float(j) * cell), false, uvec2(kNone), kMipInside);
 }
 
-/// evaluate_vertex().
+/// Sample (i, j) of a patch at its levels, object space: the definition of the surface.
 vec3 find_sample(SurfaceData s, uint patch_index, uint packed_levels, uint i, uint j) {
     uvec4 quad = load_quad(s, patch_index);
     SamplePlace place = place_sample(s, quad, patch_index, packed_levels, i, j);
