@@ -230,7 +230,7 @@ void Film::add_sample(int x, int y, const FilmSample& sample) {
     add(x, y, sums, sample.alpha);
 }
 
-bool Film::needs_first_hits() const {
+bool Film::needs_surface_sums() const {
     const auto is_of_light = [](const Layer& layer) {
         const LayerSource source = kLayerKinds[layer.kind].source;
         return is_of_paths(source) || source == LayerSource::samples || source == LayerSource::variance ||

@@ -87,8 +87,9 @@ class Film {
     const Window& window() const { return window_; }
     /// Before the first sample of a film with Cryptomatte layers.
     void name_instances(std::shared_ptr<const InstanceMattes> mattes) { mattes_ = std::move(mattes); }
-    /// Whether what camera rays hit matters, beside whether they do, and not only the light of samples.
-    bool needs_first_hits() const;
+    /// Whether sums of surfaces that camera rays met matter, and not only the light of samples and whether
+    /// they hit.
+    bool needs_surface_sums() const;
     bool needs_hit_ids() const { return objects_ || materials_; }
     /// (x, y) in pixels of the whole picture, inside the window.
     void add_sample(int x, int y, const FilmSample& sample);

@@ -70,21 +70,20 @@ template <class Sums> void add_pixels(Film& film, const Buffer& buffer, const Fi
 
 FilmReader::FilmReader(const Device& device) : film_colors_(make_kernel(device, "film_colors")) {}
 
-void FilmReader::pack(Commands& commands, const Film& film, const Buffer& scratch, uint32_t count) {
-    packed_ = nullptr;
-    if (film.needs_first_hits()) return;
-    packed_ = &scratch;
+BatchSums FilmReader::pack(Commands& commands, const Film& film, const Buffer& sums, const Buffer& scratch,
+                           uint32_t count) const {
+    if (film.needs_surface_sums()) return {&sums};
     commands.begin_stage(Stage::film);
     const uint32_t words = count * scalar::kFilmColorsWords;
     commands.dispatch(film_colors_, words, scalar::FilmColorsPush{words});
+    return {&scratch, true};
 }
 
-void FilmReader::add(Film& film, const Buffer& sums, const FilmBatch& batch) {
-    if (packed_)
-        add_pixels<scalar::FilmColorsData>(film, *packed_, batch);
+void FilmReader::add(Film& film, const BatchSums& sums, const FilmBatch& batch) {
+    if (sums.has_colors_alone)
+        add_pixels<scalar::FilmColorsData>(film, *sums.buffer, batch);
     else
-        add_pixels<scalar::FilmSumsData>(film, sums, batch);
-    packed_ = nullptr;
+        add_pixels<scalar::FilmSumsData>(film, *sums.buffer, batch);
 }
 
 } // namespace relief::vulkan

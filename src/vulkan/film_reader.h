@@ -17,6 +17,12 @@ struct FilmBatch {
     std::span<const Vec3f> lights;        ///< as many a pixel as the film has layers of light
 };
 
+/// Where the sums of a batch are.
+struct BatchSums {
+    const Buffer* buffer;
+    bool has_colors_alone = false; ///< FilmColorsData in place of FilmSumsData
+};
+
 /// Not thread safe.
 class FilmReader {
   public:
@@ -24,15 +30,14 @@ class FilmReader {
     explicit FilmReader(const Device& device);
 
     /// Where `film` has use for colours alone, records what brings those of `count` pixels together in
-    /// `scratch`, which is bound to kBindPoints and free.
-    void pack(Commands& commands, const Film& film, const Buffer& scratch, uint32_t count);
+    /// `scratch`, which is bound to kBindPoints and free. `sums` is bound to kBindFilm.
+    BatchSums pack(Commands& commands, const Film& film, const Buffer& sums, const Buffer& scratch,
+                   uint32_t count) const;
 
-    /// Adds a batch: what was packed last, or all of `sums`.
-    void add(Film& film, const Buffer& sums, const FilmBatch& batch);
+    static void add(Film& film, const BatchSums& sums, const FilmBatch& batch);
 
   private:
     Kernel film_colors_;
-    const Buffer* packed_ = nullptr; ///< the scratch memory; null: nothing was packed
 };
 
 } // namespace relief::vulkan

@@ -193,6 +193,7 @@ void PathTracer::trace_batch(Film& film, SampleRange samples,
     const uint64_t sum_bytes = pixels_.size() * sizeof(scalar::FilmSumsData);
     const uint64_t light_bytes = pixels_.size() * light_layers_.count() * sizeof(Vec3f);
     batch_casts_.clear();
+    BatchSums sums{&film_sums_};
     int done = 0;
     try {
         clear_sums(samples.count);
@@ -203,18 +204,19 @@ void PathTracer::trace_batch(Film& film, SampleRange samples,
             if (whole_sums_ && light_bytes > 0)
                 commands.copy(film_sums_, find_light_sums(), whole_sums_, find_light_sums(), light_bytes);
             const bool is_last = done + 1 == samples.count;
-            if (is_last && !whole_sums_) film_reader_.pack(commands, film, points_, uint32_t(pixels_.size()));
+            if (is_last && !whole_sums_)
+                sums = film_reader_.pack(commands, film, film_sums_, points_, uint32_t(pixels_.size()));
             if (whole_sums_ || is_last) commands.run();
             if (whole_sums_) on_samples(pixels_.size());
         }
     } catch (const StopRequest&) {
-        if (whole_sums_ && done > 0) add_to_film(film, whole_sums_, done);
+        if (whole_sums_ && done > 0) add_to_film(film, whole_sums_, {&whole_sums_}, done);
         throw;
     } catch (...) {
         batch_casts_.clear(); // the batch is traced again, and its rays must count once
         throw;
     }
-    add_to_film(film, film_sums_, samples.count);
+    add_to_film(film, film_sums_, sums, samples.count);
     if (!whole_sums_) on_samples(pixels_.size() * uint64_t(samples.count));
 }
 
@@ -410,7 +412,8 @@ void PathTracer::trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count)
     commands.dispatch(shadow_light_, shadow_count, push);
 }
 
-void PathTracer::add_to_film(Film& film, const Buffer& device_sums, int sample_count) {
+/// `light_sums`: the buffer behind whose sums those of light lie.
+void PathTracer::add_to_film(Film& film, const Buffer& light_sums, const BatchSums& sums, int sample_count) {
     const Timer timer;
     DCHECK(notes_first_hits_ || !film.needs_hit_ids());
     const size_t light_count = light_layers_.count();
@@ -418,8 +421,8 @@ void PathTracer::add_to_film(Film& film, const Buffer& device_sums, int sample_c
     const std::vector<uint32_t> first_hits = download_first_hits(sample_count);
     const std::vector<Vec3f> lights =
         light_count == 0 ? std::vector<Vec3f>()
-                         : device_sums.download<Vec3f>(pixels_.size() * light_count, find_light_sums());
-    film_reader_.add(film, device_sums, {pixels_, sample_count, first_hits, lights});
+                         : light_sums.download<Vec3f>(pixels_.size() * light_count, find_light_sums());
+    FilmReader::add(film, sums, {pixels_, sample_count, first_hits, lights});
     film_s_ += timer.seconds();
     for (const CastStatistics& cast : batch_casts_) add_cast(casts_, cast);
     batch_casts_.clear();

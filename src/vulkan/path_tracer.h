@@ -75,7 +75,7 @@ class PathTracer {
     NextRays read_lists();
     CastStatistics lift_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
     void trace_shadow_rays(scalar::PathPush push, uint32_t shadow_count);
-    void add_to_film(Film& film, const Buffer& sums, int sample_count);
+    void add_to_film(Film& film, const Buffer& light_sums, const BatchSums& sums, int sample_count);
     std::vector<uint32_t> download_first_hits(int sample_count) const;
     scalar::PathPush make_push(uint32_t sample_index) const;
 

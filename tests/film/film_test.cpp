@@ -57,6 +57,18 @@ TEST(Film, names_its_channels_in_the_order_of_its_table) {
     EXPECT_EQ(film.resolve().channels, expected);
 }
 
+TEST(Film, needs_sums_of_surfaces_for_layers_of_surfaces_alone) {
+    const auto needs = [](const std::vector<std::string>& layers) {
+        return Film(4, 4, {}, layers).needs_surface_sums();
+    };
+    for (const char* layer : {"depth", "N", "N_camera", "Ng", "P", "albedo", "uv", "id", "shadow"})
+        EXPECT_TRUE(needs({layer})) << layer;
+    EXPECT_FALSE(needs({}));
+    EXPECT_FALSE(needs({"samples", "variance", "cost", "direct", "light_GROUP"}));
+    EXPECT_TRUE(needs({"variance", "albedo"}));
+    EXPECT_FALSE(Film(4, 4, {}, {}, ErrorEstimate::on).needs_surface_sums());
+}
+
 TEST(Film, refuses_an_unknown_layer_and_lists_the_known_ones) {
     try {
         const Film film(4, 4, {}, {"dept"});
