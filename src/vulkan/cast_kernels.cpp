@@ -73,7 +73,8 @@ CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const R
     commit_round = Kernel(device, {"commit_round", {kGroup}});
     finish_hits = Kernel(device, {"finish_hits", scene.add_filter({kGroup, is_box})});
 
-    const std::array<BuildShape, scalar::kBuildBinCount> shapes = choose_shapes(is_cpu);
+    const std::array<BuildShape, scalar::kBuildBinCount> shapes =
+        choose_shapes(is_cpu && !config.builds_as_gpu);
     arguments_push.group_size = kGroup;
     const bool is_coarser = config.may_see_coarser || settings.surface.lod == LodRule::ray;
     for (uint32_t bin = 0; bin < scalar::kBuildBinCount; ++bin) {

@@ -27,6 +27,7 @@ struct TracerConfig {
     std::optional<PoolGrowth> pool_growth;  ///< of the pool of trees; not given: choose_pool_growth()
     uint32_t fused_group_count = 0;    ///< persistent groups of the fused form; 0: enough to fill the device
     uint32_t fused_jobs_per_group = 0; ///< trees per group and launch; 0: as many as are safe
+    bool builds_as_gpu = false;        ///< trees in the large groups that GPUs have, on a CPU device, too
     bool may_see_coarser = false;      ///< rays may have an LOD bias, beside the bounces of a render
 };
 

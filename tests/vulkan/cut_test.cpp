@@ -15,6 +15,7 @@ struct Cut {
     uint32_t rays_a_chunk = 1u << 14;
     size_t cache_bytes = size_t(64) << 20;
     uint32_t groups = 0, jobs_a_group = 0; ///< of the fused form
+    uint32_t collected = 0;
 };
 
 const Cut kCuts[] = {
@@ -49,6 +50,7 @@ class CutTest : public GpuTest {
         TracerConfig config;
         config.slots = slots;
         config.pair_capacity = cut.rays_a_chunk * config.slots;
+        config.collected = cut.collected;
         config.fused_group_count = cut.groups;
         config.fused_jobs_per_group = cut.jobs_a_group;
         const CastAnswers found =
@@ -82,6 +84,16 @@ TEST_F(CutTest, into_rounds_of_any_size_loses_no_pair) {
         const Statistics whole = check({.name = "whole"}, slots), cut = check(kCuts[0], slots);
         EXPECT_EQ(cut.pairs_emitted, whole.pairs_emitted) << slots << " a round";
     }
+}
+
+/// Rays that offer one candidate a round and then all that they have left cast more pairs: those behind the
+/// hit.
+TEST_F(CutTest, a_round_that_collects_offers_all_that_is_left) {
+    prepare(4);
+    const Statistics sorted = check({.name = "sorted", .rays_a_chunk = 1u << 18}, 1);
+    const Statistics collecting =
+        check({.name = "collecting", .rays_a_chunk = 1u << 18, .collected = 127}, 1);
+    EXPECT_GT(collecting.pairs_emitted, sorted.pairs_emitted);
 }
 
 // Tiles at one distance are offered in the order of their numbers, which follow the order that rays asked in.

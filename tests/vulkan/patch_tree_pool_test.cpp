@@ -81,12 +81,15 @@ TEST_F(PatchTreePool, without_a_cache_gives_each_wave_all_of_itself) {
     }
 }
 
-TEST_F(PatchTreePool, of_a_processor_has_the_usual_size_and_does_not_grow) {
-    if (!device().is_cpu()) GTEST_SKIP() << "the device is a GPU";
+TEST_F(PatchTreePool, has_the_usual_size_on_a_processor_and_room_for_large_waves_on_a_gpu) {
+    const uint64_t most = std::min(device().max_buffer_bytes(), device().available_bytes() / 4);
     const PoolGrowth growth = choose_pool_growth(device(), {.tree_bytes = 4096 * kMebibyte});
-    EXPECT_EQ(growth.first_bytes, std::min({uint64_t(kDefaultCacheBytes), device().max_buffer_bytes(),
-                                            device().available_bytes() / 4}));
-    EXPECT_LE(growth.most_bytes, growth.first_bytes);
+    const PoolGrowth capped =
+        choose_pool_growth(device(), {.cap_bytes = 3 * kMebibyte, .tree_bytes = 4096 * kMebibyte});
+    EXPECT_EQ(growth.first_bytes, std::min(device().is_cpu() ? kDefaultCacheBytes : 1024 * kMebibyte, most));
+    EXPECT_EQ(growth.most_bytes > 0, !device().is_cpu());
+    EXPECT_EQ(capped.first_bytes, std::min(3 * kMebibyte, most));
+    EXPECT_EQ(capped.most_bytes, 0u); // it keeps to its cap
 }
 
 } // namespace

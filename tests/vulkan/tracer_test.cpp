@@ -18,6 +18,7 @@ struct Case {
     uint32_t pair_capacity = 1u << 16;
     uint32_t slots = 4;
     uint32_t collected = 0;
+    bool builds_as_gpu = false;
     uint32_t rays = 1500;
     uint32_t restart_units = 1u << 31;
     LodRule lod = LodRule::field;
@@ -51,6 +52,7 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     config.pair_capacity = c.pair_capacity;
     config.slots = c.slots;
     config.collected = c.collected;
+    config.builds_as_gpu = c.builds_as_gpu;
     config.pool_restart_units = c.restart_units;
     expect_same(cast_on_device(device(), *scene, settings, rays, config), cast_on_cpu(scene, settings, rays),
                 rays);
@@ -117,6 +119,10 @@ INSTANTIATE_TEST_SUITE_P(
         Case{.name = "all_left_collected", .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
         Case{.name = "tiles_collected", .level = 6, .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
         Case{.name = "too_many_to_collect", .pair_capacity = 3000, .slots = 1, .collected = 2},
+        Case{.name = "trees_of_large_groups", .level = kAutoLevel, .builds_as_gpu = true},
+        Case{.name = "leaves_of_large_groups", .level = 0, .builds_as_gpu = true},
+        Case{.name = "small_trees_of_large_groups", .level = 1, .builds_as_gpu = true},
+        Case{.name = "tiles_of_large_groups", .level = 6, .builds_as_gpu = true},
         Case{.name = "level_a_ray", .level = kAutoLevel, .lod = LodRule::ray},
         Case{.name = "many_waves", .level = 6, .cache_bytes = 1}),
     [](const auto& info) { return std::string(info.param.name); });

@@ -330,7 +330,8 @@ class TreeBatch : public GpuTest {
             truths[k].is_doubtful |= is_outside;
             outside += is_outside;
         }
-        EXPECT_LE(outside, kRayCount / 5); // 55 of the tiny ones with zeros
+        // With zeros 55 of the tiny ones; of others what a device rounds otherwise.
+        EXPECT_LE(outside, set.name == "tiny" ? kRayCount / 5 : kRayCount / 100);
         return truths;
     }
 
