@@ -16,6 +16,7 @@ KEYS = ["registers", "spills", "scratch_bytes"]
 COMPILER = "Mesa 22.3."  # of Debian 12: another one has other figures
 FOLDERS = ["/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"]
 SKIPPED = 77
+SHARED_BYTES = 16384  # of a group: what every device has (maxComputeSharedMemorySize)
 
 
 def skip(reason):
@@ -63,6 +64,8 @@ def find_faults(rows, budgets, device):
         limits = [budget for budget in budgets if is_for(budget, row)][-1][2][device]
         faults += [f"{row['kernel']} ({row['cases'][0]}, {row['program']}) on {device}: {key} {value}, its budget is {limit}"
                    for key, value, limit in zip(KEYS, measure(row), limits) if value > limit]
+        if row.get("shared_bytes", 0) > SHARED_BYTES and row["program"] == "Compute Shader":
+            faults.append(f"{row['kernel']} ({row['cases'][0]}) on {device}: shared_bytes {row['shared_bytes']}")
     return faults
 
 

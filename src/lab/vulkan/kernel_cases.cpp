@@ -91,8 +91,8 @@ void add_many_lights(Scene& scene) {
 }
 
 void add_light_layers(Scene& scene, RenderSettings& settings) {
-    scene.lights[0].light_group = "lamp";
-    settings.image.layers = {"diffuse_direct", "light_lamp", "light_default"};
+    scene.lights[0].light_group = "key";
+    settings.image.layers = {"diffuse_direct", "light_key", "light_default"};
 }
 
 void catch_shadows(Scene& scene, RenderSettings& settings) {
@@ -176,7 +176,7 @@ void add_everything(Scene& scene, RenderSettings& settings) {
     for (const NamedChange& change : list_light_changes()) change.apply(scene, settings);
     add_smooth_ball(scene);
     add_sky(scene);
-    settings.image.layers = {"diffuse_direct", "light_lamp", "light_default", "guide_albedo"};
+    settings.image.layers = {"diffuse_direct", "light_key", "light_default", "guide_albedo"};
 }
 
 RenderSettings make_plain_settings(RenderSettings settings) {
