@@ -236,7 +236,7 @@ bool Film::needs_surface_sums() const {
         return is_of_paths(source) || source == LayerSource::samples || source == LayerSource::variance ||
                source == LayerSource::cost || source == LayerSource::motion;
     };
-    return !depths_.empty() || !std::ranges::all_of(layers_, is_of_light);
+    return !std::ranges::all_of(layers_, is_of_light);
 }
 
 void Film::add_sums(int x, int y, const FilmSums& added) {
