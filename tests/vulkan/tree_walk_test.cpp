@@ -330,8 +330,7 @@ class TreeBatch : public GpuTest {
             truths[k].is_doubtful |= is_outside;
             outside += is_outside;
         }
-        // With zeros 55 of the tiny ones; of others what a device rounds otherwise.
-        EXPECT_LE(outside, set.name == "tiny" ? kRayCount / 5 : kRayCount / 100);
+        EXPECT_LE(outside, set.name == "tiny" ? kRayCount / 5 : kRayCount / 100); // 55 with zeros
         return truths;
     }
 
