@@ -19,19 +19,24 @@ float copy_sign(float size, float sign) {
 
 bool is_finite(vec3 v) { return all(lessThanEqual(abs(v), vec3(3.402823466e38f))); }
 
-/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector, as normalize of math/vec.h.
+/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector, as normalize of math/vec.h. One way out: behind a
+/// return within a branch the result would keep registers through loops around it.
 vec3 make_unit(vec3 a) {
     precise float squared = a.x * a.x + a.y * a.y + a.z * a.z;
-    if (!(squared > 1e-37) || !(squared < 3e38)) {
+    vec3 result = vec3(0.0);
+    if (squared > 1e-37 && squared < 3e38) {
+        precise vec3 unit = a / sqrt(squared);
+        result = unit;
+    } else {
         float largest = max(abs(a.x), max(abs(a.y), abs(a.z)));
-        if (!(largest > 0.0) || !(largest < 3e38)) return vec3(0.0);
-        precise vec3 scaled = a / largest;
-        precise float length2 = scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z;
-        precise vec3 tiny = scaled / sqrt(length2);
-        return tiny;
+        if (largest > 0.0 && largest < 3e38) {
+            precise vec3 scaled = a / largest;
+            precise float length2 = scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z;
+            precise vec3 tiny = scaled / sqrt(length2);
+            result = tiny;
+        }
     }
-    precise vec3 unit = a / sqrt(squared);
-    return unit;
+    return result;
 }
 #endif
 #endif
