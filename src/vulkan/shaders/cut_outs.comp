@@ -38,9 +38,7 @@ vec2 find_opacity(HitData hit, inout MaterialData material) {
 
 /// Cosine of a ray to the geometric normal.
 float find_cosine(uint ray_index, HitData hit) {
-    InstanceData instance = instances[hit.instance];
-    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    CellPoint found = evaluate_cell(instance, hit.patch_index, hit.levels, place);
+    CellPoint found = evaluate_hit(hit);
     return abs(dot(found.triangle.normal, rays[ray_index].direction));
 }
 

@@ -10,8 +10,6 @@ void main() {
     if (index >= ray_count) return;
     HitData hit = hits[index];
     if (!is_hit(hit)) return;
-    InstanceData instance = instances[hit.instance];
-    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    CellPoint found = evaluate_cell(instance, hit.patch_index, hit.levels, place);
+    CellPoint found = evaluate_hit(hit);
     points[index].geometric_normal = found.triangle.normal;
 }

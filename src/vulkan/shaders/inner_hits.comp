@@ -6,9 +6,7 @@
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
 bool is_inner(uint path_index, HitData hit) {
-    InstanceData instance = instances[hit.instance];
-    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    CellPoint found = evaluate_cell(instance, hit.patch_index, hit.levels, place);
+    CellPoint found = evaluate_hit(hit);
     return dot(found.triangle.normal, rays[path_index].direction) > 0.0;
 }
 

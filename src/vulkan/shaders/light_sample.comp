@@ -35,7 +35,7 @@ DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u)
     InstanceData instance = instances[range.y];
     uint patch_index = emitter - range.x;
     bool is_polygon = is_triangle(load_quad(surfaces[instance.surface], patch_index));
-    CellPoint point = evaluate_point(instance, patch_index, is_polygon ? square_to_triangle(u) : u, lod_bias);
+    CellPoint point = evaluate_point(range.y, patch_index, is_polygon ? square_to_triangle(u) : u, lod_bias);
     vec3 to = point.triangle.position - position;
     float pdf =
         emitter_density(load_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
@@ -97,23 +97,30 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, ui
     return ray;
 }
 
+/// Whether light from behind the surface may count.
+bool is_open_behind(HitData hit, uint material_index) {
+    if (may_lift(hit)) return true;
+    return kHasGlass != 0u && !is_catcher(hit, push.depth) && is_see_through(materials[material_index]);
+}
+
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 without bounces and on shadow catchers: no
-/// other ray finds lights.
+/// other ray finds lights. Materials are read behind the light, and the BSDF is made last: both are large.
 bool sample_light(uint path_index, HitData hit) {
-    PathData path = paths[path_index];
-    SurfacePointData point = points[path_index];
+    uint pixel_seed = paths[path_index].pixel_seed;
+    uint lod_bias = rays[path_index].lod_bias;
     uint material_index = instances[hit.instance].material;
-    VertexMaterial material = load_lit_material(path_index, hit, push.capacity, push.depth);
-    RayData ray = rays[path_index];
-    vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
-    vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kLightPair);
-    vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
-    bool is_open = is_see_through(material.numbers) || may_lift(hit);
-    DrawnLight drawn = draw_light(point, hit.instance, is_open, ray.lod_bias, vec2(pick.x, last.y), u);
+    bool is_open = is_open_behind(hit, material_index);
+    vec2 pick = draw_bounce_pair(pixel_seed, push.sample_index, push.depth, kPickPair);
+    vec2 u = draw_bounce_pair(pixel_seed, push.sample_index, push.depth, kLightPair);
+    vec2 last = draw_bounce_pair(pixel_seed, push.sample_index, push.depth, kRoulettePair);
+    DrawnLight drawn = draw_light(points[path_index], hit.instance, is_open, lod_bias, vec2(pick.x, last.y), u);
     if (!(drawn.light.pdf > 0.0)) return false;
-    Scattering scattering = make_scattering(point, material, -ray.direction, pick.y);
+    float lift = find_light_lift(hit, points[path_index].geometric_normal, drawn.light.direction);
+    SurfacePointData point = points[path_index];
+    Scattering scattering = make_scattering(point, load_lit_material(path_index, hit, push.capacity, push.depth),
+                                            -rays[path_index].direction, pick.y);
     vec3 wi = to_local(scattering.basis, drawn.light.direction);
-    float lift = scattering.is_glass ? 0.0 : find_light_lift(hit, point, drawn.light.direction);
+    if (scattering.is_glass) lift = 0.0;
     bool is_lifted = lift > 0.0;
     if (is_open && !is_lifted && !is_on_one_side(scattering, point, drawn.light.direction, wi)) return false;
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
@@ -121,22 +128,23 @@ bool sample_light(uint path_index, HitData hit) {
     bool is_caught = is_catcher(hit, push.depth);
     bool is_alone = push.last_depth == 0u || is_lifted || is_caught;
     float weight = is_alone ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
+    PathData path = paths[path_index];
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
     if (contribution == vec3(0.0) || !is_finite(contribution)) return false;
-    RayData shadow = make_shadow_ray(point, drawn, lift, ray.lod_bias);
+    if (kLightKinds != 0u && push.depth == 0u)
+        store_light_shares(push.capacity, path_index, find_light_shares(scattering, wi, bsdf.value));
+    RayData shadow = make_shadow_ray(point, drawn, lift, lod_bias);
     uint body = find_next_body(path, scattering, point, material_index, shadow.direction);
     if (kHasGlass != 0u && body != kNone) contribution *= absorb_along(materials[body].glass.depth, shadow.t_max);
     if (is_caught) film[path_index].shadow.z += luminance(contribution);
     paths[path_index].contribution = clamp_indirect(contribution, push.clamp_indirect, push.depth);
     paths[path_index].cost = path.cost + 1.0;
-    if (kLightKinds != 0u && push.depth == 0u)
-        store_light_shares(push.capacity, path_index, find_light_shares(scattering, wi, bsdf.value));
     store_light_group(push.capacity, path_index, drawn.group);
     if (kTerminators != 0u) {
         paths[path_index].lifted_direction = shadow.direction;
         paths[path_index].lifted_distance = is_lifted ? shadow.t_max : 0.0;
         vec3 origin = point.position + point.geometric_normal * point.position_error;
-        if (is_lifted) shadow = RayData(origin, 0.0, point.geometric_normal, lift, ray.lod_bias);
+        if (is_lifted) shadow = RayData(origin, 0.0, point.geometric_normal, lift, lod_bias);
     }
     rays[push.capacity + path_index] = shadow;
     return true;

@@ -7,9 +7,7 @@ layout(scalar, push_constant) uniform Push { PathPush push; };
 layout(scalar, set = 0, binding = kBindFilm) buffer FirstHits { uint first_hits[]; };
 
 void make_point(uint path_index, HitData hit) {
-    InstanceData instance = instances[hit.instance];
-    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
-    CellPoint found = evaluate_cell(instance, hit.patch_index, hit.levels, place);
+    CellPoint found = evaluate_hit(hit);
     bool is_flipped = dot(found.triangle.normal, rays[path_index].direction) > 0.0;
     points[path_index].position = found.triangle.position;
     points[path_index].position_error = found.position_error;

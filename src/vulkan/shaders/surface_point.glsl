@@ -16,17 +16,17 @@ struct CellPoint {
     float position_error;
 };
 
-float bound_error(InstanceData instance, vec3 a, vec3 b, vec3 c, vec3 position) {
-    AffineData world_from_object = instance.world_from_object;
+float bound_error(uint instance, vec3 a, vec3 b, vec3 c, vec3 position) {
+    AffineData world_from_object = instances[instance].world_from_object;
     float corner = max(max(largest_coordinate(a), largest_coordinate(b)), largest_coordinate(c));
     float row = max(max(sum_magnitudes(world_from_object.x), sum_magnitudes(world_from_object.y)),
                     sum_magnitudes(world_from_object.z));
     return bound_position_error(corner, row, largest_coordinate(world_from_object.t), largest_coordinate(position),
-                                share_of_place(instance.origin));
+                                share_of_place(instances[instance].origin));
 }
 
-CellPoint evaluate_cell(InstanceData instance, uint patch_index, uint packed_levels, CellPlace place) {
-    SurfaceData s = surfaces[instance.surface];
+CellPoint evaluate_cell(uint instance, uint patch_index, uint packed_levels, CellPlace place) {
+    SurfaceData s = surfaces[instances[instance].surface];
     uvec4 quad = load_quad(s, patch_index);
     vec3 corner[3];
     // Corners 00 10 11 of the lower triangle, 00 11 01 of the upper; a loop inlines the evaluation once.
@@ -37,22 +37,28 @@ CellPoint evaluate_cell(InstanceData instance, uint patch_index, uint packed_lev
         corner[k] = s.map == kNone ? load_position(s, quad[around]) : find_sample(s, patch_index, packed_levels, i, j);
     }
     float side = float(1u << packed_patch_level(packed_levels));
-    AffineData m = instance.world_from_object;
+    AffineData m = instances[instance].world_from_object;
     vec3 local = blend_corners(corner[0], corner[1], corner[2], weigh_corners(place, side));
     CellPoint point;
     point.triangle =
         make_triangle_point(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
-                            transform_vector(m, corner[2] - corner[0]), (instance.levels & kMirrored) != 0u ? -1.0 : 1.0,
+                            transform_vector(m, corner[2] - corner[0]),
+                            (instances[instance].levels & kMirrored) != 0u ? -1.0 : 1.0,
                             triangle_uv_area(is_triangle(quad), side));
     point.position_error = bound_error(instance, corner[0], corner[1], corner[2], point.triangle.position);
     return point;
 }
 
+CellPoint evaluate_hit(HitData hit) {
+    CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
+    return evaluate_cell(hit.instance, hit.patch_index, hit.levels, place);
+}
+
 /// Point (u, v) of a patch as rays with this LOD bias see it.
-CellPoint evaluate_point(InstanceData instance, uint patch_index, vec2 uv, uint lod_bias) {
-    uint packed_levels = lower_packed_levels(find_levels(instance, patch_index), lod_bias);
+CellPoint evaluate_point(uint instance, uint patch_index, vec2 uv, uint lod_bias) {
+    uint packed_levels = lower_packed_levels(find_levels(instances[instance], patch_index), lod_bias);
     uint side = 1u << packed_patch_level(packed_levels);
-    bool is_polygon = is_triangle(load_quad(surfaces[instance.surface], patch_index));
+    bool is_polygon = is_triangle(load_quad(surfaces[instances[instance].surface], patch_index));
     CellPlace place = locate_cell(is_polygon, side, uv.x, uv.y);
     return evaluate_cell(instance, patch_index, packed_levels, place);
 }

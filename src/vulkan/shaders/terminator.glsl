@@ -20,58 +20,63 @@ bool may_lift(HitData hit) {
     return s.map == kNone || (kTerminators == kAllTerminators && !has_detail(load_mips(s, hit.patch_index)));
 }
 
-/// Corners of a triangle with the smooth surface's normals there, and the normal at a point; object space.
-struct SmoothTriangle {
-    vec3 corner[3];
-    vec3 normal[4];
-};
+/// Corner of the triangle that was hit, 0 to 2, among those of its cell: 00 10 11 01.
+uint find_cell_corner(HitData hit, uint k) { return k + (cell_is_upper(hit.cell) != 0u && k > 0u ? 1u : 0u); }
+uvec2 find_corner_sample(HitData hit, uint around) {
+    return uvec2(cell_column(hit.cell) + (around == 1u || around == 2u ? 1u : 0u),
+                 cell_row(hit.cell) + (around >= 2u ? 1u : 0u));
+}
 
-SmoothTriangle find_smooth_triangle(SurfaceData s, HitData hit) {
+/// Object space.
+vec3 find_triangle_corner(SurfaceData s, HitData hit, uint k) {
+    uint around = find_cell_corner(hit, k);
+    if (s.map == kNone) return load_position(s, load_quad(s, hit.patch_index)[around]);
+    if (kTerminators != kAllTerminators) return vec3(0.0);
+    uvec2 at = find_corner_sample(hit, around);
+    return find_sample(s, hit.patch_index, hit.levels, at.x, at.y);
+}
+
+/// Of the smooth surface, object space: at the point for `turn` 0, then at the corners.
+vec3 find_smooth_normal(SurfaceData s, HitData hit, uint turn) {
     uvec4 quad = load_quad(s, hit.patch_index);
+    vec2 at = vec2(hit.u, hit.v);
+    uint around = find_cell_corner(hit, turn - 1u);
+    if (s.map == kNone) return turn == 0u ? compute_plain_normal(s, quad, at) : load_normal(s, quad[around]);
+    if (kTerminators != kAllTerminators) return vec3(0.0);
     uint level = packed_patch_level(hit.levels);
-    SmoothTriangle result;
-    // A loop, so that the evaluation is inlined only once; the last turn is the point itself.
-    for (uint k = 0u; k < 4u; ++k) {
-        uint around = k + (cell_is_upper(hit.cell) != 0u && k > 0u ? 1u : 0u);
-        if (s.map == kNone) {
-            if (k < 3u) result.corner[k] = load_position(s, quad[around]);
-            result.normal[k] = k < 3u ? load_normal(s, quad[around])
-                                      : compute_plain_normal(s, quad, vec2(hit.u, hit.v));
-        } else if (kTerminators == kAllTerminators) {
-            uint i = cell_column(hit.cell) + (around == 1u || around == 2u ? 1u : 0u);
-            uint j = cell_row(hit.cell) + (around >= 2u ? 1u : 0u);
-            if (k < 3u) result.corner[k] = find_sample(s, hit.patch_index, hit.levels, i, j);
-            vec2 at = k < 3u ? vec2(i, j) * (1.0 / float(1u << level)) : vec2(hit.u, hit.v);
-            result.normal[k] = compute_displaced_normal(s, quad, hit.patch_index, level, at);
-        }
-    }
-    return result;
+    if (turn > 0u) at = vec2(find_corner_sample(hit, around)) * (1.0 / float(1u << level));
+    return compute_displaced_normal(s, quad, hit.patch_index, level, at);
 }
 
 /// How far above the point the smooth surface lies from which light of that direction is seen; 0: it comes
 /// from above the triangle, or from below both.
-float find_light_lift(HitData hit, SurfacePointData point, vec3 direction) {
-    if (dot(direction, point.geometric_normal) > 0.0 || !may_lift(hit)) return 0.0;
-    InstanceData instance = instances[hit.instance];
-    SmoothTriangle t = find_smooth_triangle(surfaces[instance.surface], hit);
-    vec3 smooth_normal = orient_shading_normal(transform_normal(instance.object_from_origin, t.normal[3]),
-                                               point.geometric_normal);
-    if (!is_lost_light(direction, point.geometric_normal, smooth_normal)) return 0.0;
+float find_light_lift(HitData hit, vec3 geometric_normal, vec3 direction) {
+    if (dot(direction, geometric_normal) > 0.0 || !may_lift(hit)) return 0.0;
+    SurfaceData s = surfaces[instances[hit.instance].surface];
+    vec3 corner[3];
+    for (uint k = 0u; k < 3u; ++k) corner[k] = find_triangle_corner(s, hit, k);
     CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
     CornerWeights weights = weigh_corners(place, float(1u << packed_patch_level(hit.levels)));
-    vec3 at = blend_corners(t.corner[0], t.corner[1], t.corner[2], weights);
-    vec3 heights;
-    for (uint k = 0u; k < 3u; ++k)
-        heights[k] = find_tangent_height(transform_vector(instance.world_from_object, t.corner[k] - at),
-                                         make_unit(transform_normal(instance.object_from_origin, t.normal[k])),
-                                         point.geometric_normal);
-    return blend_tangent_heights(heights, weights);
+    vec3 at = blend_corners(corner[0], corner[1], corner[2], weights);
+    bool is_lost = true;
+    vec3 heights = vec3(0.0);
+    // One loop, so that the normal is inlined only once.
+    for (uint turn = 0u; turn < 4u && is_lost; ++turn) {
+        vec3 normal = transform_normal(instances[hit.instance].object_from_origin, find_smooth_normal(s, hit, turn));
+        if (turn == 0u)
+            is_lost = is_lost_light(direction, geometric_normal, orient_shading_normal(normal, geometric_normal));
+        else
+            heights[turn - 1u] = find_tangent_height(
+                transform_vector(instances[hit.instance].world_from_object, corner[turn - 1u] - at), make_unit(normal),
+                geometric_normal);
+    }
+    return is_lost ? blend_tangent_heights(heights, weights) : 0.0;
 }
 
 #else
 const uint kTerminators = 0;
 bool may_lift(HitData hit) { return false; }
-float find_light_lift(HitData hit, SurfacePointData point, vec3 direction) { return 0.0; }
+float find_light_lift(HitData hit, vec3 geometric_normal, vec3 direction) { return 0.0; }
 #endif
 
 #endif
