@@ -8,18 +8,18 @@ layout(scalar, push_constant) uniform Push { PathPush push; };
 
 /// Sets the next ray; false if the path terminates.
 bool continue_path(uint path_index, HitData hit) {
-    PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
-    RayData ray = rays[path_index];
-    vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
-    vec2 u = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kBsdfPair);
-    vec2 last = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kRoulettePair);
+    uint pixel_seed = paths[path_index].pixel_seed;
+    vec2 pick = draw_bounce_pair(pixel_seed, push.sample_index, push.depth, kPickPair);
+    vec2 u = draw_bounce_pair(pixel_seed, push.sample_index, push.depth, kBsdfPair);
+    vec2 last = draw_bounce_pair(pixel_seed, push.sample_index, push.depth, kRoulettePair);
     uint material = instances[hit.instance].material;
     Scattering scattering = make_scattering(
-        point, load_vertex_material(material, push.capacity, path_index), -ray.direction, pick.y);
+        point, load_vertex_material(material, push.capacity, path_index), -rays[path_index].direction, pick.y);
     BsdfSample drawn = sample_scattering(scattering, u);
     vec3 direction = make_unit(from_local(scattering.basis, drawn.direction));
     if (drawn.weight == vec3(0.0) || !is_on_one_side(scattering, point, direction, drawn.direction)) return false;
+    PathData path = paths[path_index];
     vec3 throughput = path.throughput * drawn.weight;
     uint body = find_next_body(path, scattering, point, material, direction);
     bool is_inside = kHasGlass != 0u && body != kNone;
@@ -38,11 +38,12 @@ bool continue_path(uint path_index, HitData hit) {
         store_bounce_shares(push.capacity, path_index,
                             find_light_shares(scattering, drawn.direction, drawn.weight * drawn.pdf));
     vec3 origin = offset_origin(point.position, point.geometric_normal, point.position_error, direction);
-    float near_end = find_coarse_distance(push.bounce_lod, origin, ray.lod_bias, drawn.pdf);
+    uint lod_bias = rays[path_index].lod_bias;
+    float near_end = find_coarse_distance(push.bounce_lod, origin, lod_bias, drawn.pdf);
     // Within a body, between the two surfaces there would be a way in, or none out.
     float height = dot(point.geometric_normal, direction) * (point.is_flipped != 0u ? -1.0 : 1.0);
     if (is_inside || height < 0.0) near_end = make_infinity();
-    RayData next = {origin, 0.0, direction, near_end, ray.lod_bias};
+    RayData next = {origin, 0.0, direction, near_end, lod_bias};
     rays[path_index] = next;
     return true;
 }
