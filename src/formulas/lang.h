@@ -19,8 +19,8 @@ float copy_sign(float size, float sign) {
 
 bool is_finite(vec3 v) { return all(lessThanEqual(abs(v), vec3(3.402823466e38f))); }
 
-/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector, as normalize of math/vec.h. One way out: behind a
-/// return within a branch the result would keep registers through loops around it.
+/// Unit vector along a; (0, 0, 0) for a zero or non-finite vector, as normalize of math/vec.h. One way out:
+/// behind a return within a branch the result would keep registers through loops around it.
 vec3 make_unit(vec3 a) {
     precise float squared = a.x * a.x + a.y * a.y + a.z * a.z;
     vec3 result = vec3(0.0);
