@@ -73,9 +73,9 @@ Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* 
 /// The same map with the most probable space, axes and midlevel; what cannot be determined is unchanged.
 Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
 
-/// What speaks against the assumptions about the maps of a scene (Displacement::assumed): each finding names
-/// the setting that says it, "displacement.axes = t,n,b". At most 2^18 texels a map are looked at, and none
-/// of maps whose convention was stated in full. That seams speak for object space is left to render(), which
+/// What speaks against the assumptions about the maps of a scene (Displacement::assumed), and clearly against
+/// axes that were declared: each finding names the setting that says it, "displacement.axes = t,n,b". At most
+/// 2^18 texels a map are looked at. That seams speak for object space is left to render(), which
 /// warns of it. The scene must be valid.
 std::vector<Finding> find_doubtful_assumptions(const Scene& scene);
 

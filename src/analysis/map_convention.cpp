@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 constexpr double kClearRatio = 1.5; ///< by how much the best must be ahead of the next
-constexpr double kOneSided = 0.5;   ///< least one-sidedness of a channel along the normal
+constexpr double kMostLead = 1e9;
+constexpr double kOneSided = 0.5; ///< least one-sidedness of a channel along the normal
 
 /// The channel along the normal: sculpts rise more than they slide, so its mean is the most one-sided.
 struct NormalChannel {
@@ -39,7 +40,7 @@ NormalChannel find_normal_channel(const MapStatistics& statistics) {
     const double next = std::max(strength[(best.channel + 1) % 3], strength[(best.channel + 2) % 3]);
     const double one_sided = statistics.channels[best.channel].one_sided;
     best.sign = one_sided < 0 ? -1 : 1;
-    best.ratio = next > 0 ? strength[best.channel] / next : 1e9;
+    best.ratio = next > 0 ? strength[best.channel] / next : kMostLead;
     best.is_clear =
         strength[best.channel] > 0 && best.ratio >= kClearRatio && std::fabs(one_sided) >= kOneSided;
     return best;
@@ -77,12 +78,17 @@ void guess_order_on_plane(const Displacement& map, const NormalChannel& normal, 
         100 * best.share, other_share > 0 ? std::min(best.share / other_share, 99.0) : 99.0);
 }
 
+/// The channel along the normal, or along z.
+ptrdiff_t find_third_axis(const AxisMap& axes) {
+    return std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin();
+}
+
 /// The order that programs write for a channel along the normal.
 AxisMap make_usual_axes(const NormalChannel& normal) { return make_axes(normal, 0); }
 
 void guess_tangent_axes(const Displacement& map, const MapStatistics& statistics, MapConvention& result) {
     const NormalChannel normal = find_normal_channel(statistics);
-    result.axes.is_clear = normal.is_clear;
+    result.axes.is_clear = normal.is_clear, result.axes_lead = normal.ratio;
     if (!normal.is_clear) {
         result.axes.reason = "no channel has a mean far more one-sided than the others";
         return;
@@ -119,6 +125,7 @@ void refine_by_seams(const std::vector<SeamSample>& seams, const MapStatistics& 
                    fmt::format("{} is along the normal: so the uv seams close to {:.0f} % of the movement, "
                                "with another channel to {:.0f} %",
                                kChannelNames[channel], 100 * gaps[channel], 100 * next)};
+    result.axes_lead = gaps[channel] > 0 ? next / gaps[channel] : kMostLead;
     result.is_order_clear = false;
 }
 
@@ -138,6 +145,7 @@ void guess_object_axes(const MapSamples& samples, MapConvention& result) {
         }
     }
     result.axes.is_clear = result.is_order_clear = best >= kLeastRise && best > kClearRatio * next;
+    result.axes_lead = next > 0 ? best / next : kMostLead;
     if (result.axes.is_clear) {
         result.axes.reason = fmt::format(
             "so the surface moves along its normals ({:.2f} of all movement, {:.2f} in the next best order)",
@@ -315,11 +323,15 @@ MapConvention guess_convention(const Displacement& map, const MapStatistics& sta
 }
 
 bool agrees_on_axes(const MapConvention& convention, const Displacement& map) {
-    const auto find_normal = [](const AxisMap& axes) {
-        return std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin();
-    };
     const AxisMap& axes = convention.axes.value;
-    return convention.is_order_clear ? axes == map.axes : find_normal(axes) == find_normal(map.axes);
+    return convention.is_order_clear ? axes == map.axes : find_third_axis(axes) == find_third_axis(map.axes);
+}
+
+bool contradicts_axes(const MapConvention& convention, const Displacement& map) {
+    constexpr double kCertainLead = 2;
+    if (!convention.axes.is_clear || convention.axes_lead < kCertainLead) return false;
+    if (map.space == DisplacementSpace::object) return !agrees_on_axes(convention, map);
+    return find_third_axis(convention.axes.value) != find_third_axis(map.axes);
 }
 
 std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams) {

@@ -1,4 +1,4 @@
-// Assumed conventions of maps, compared with what their values look like.
+// Conventions of maps, assumed or declared, compared with what their values look like.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -92,13 +92,13 @@ void add_convention(const Displacement& map, const MapConvention& convention,
             findings, "I-SPACE",
             "tangent space is assumed, but it looks like object space: {}; write displacement.space = object",
             convention.space.reason);
-    if (is_object || !map.assumed.axes || !convention.axes.is_clear) return;
-    const AxisMap& axes = convention.axes.value;
-    if (agrees_on_axes(convention, map)) return;
-    const std::string presets = list_presets(axes);
-    add_warning(findings, "I-AXES", "axes {} are assumed, but {}; write displacement.axes = {}{}",
-                format_map_axes(map.axes, map.space), convention.axes.reason,
-                format_map_axes(axes, map.space), presets.empty() ? "" : ", as presets " + presets);
+    if (is_object || !convention.axes.is_clear) return;
+    const bool is_doubtful =
+        map.assumed.axes ? !agrees_on_axes(convention, map) : contradicts_axes(convention, map);
+    if (!is_doubtful) return;
+    add_warning(findings, "I-AXES", "axes {} are {}, but {}; {}", format_map_axes(map.axes, map.space),
+                map.assumed.axes ? "assumed" : "declared", convention.axes.reason,
+                advise_axes(convention, map.space));
 }
 
 /// One image that does not repeat is stretched from its edge over uvs outside of it.
@@ -155,12 +155,10 @@ void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Find
 
 /// What the values of the map say; the convention is tried on one of its meshes.
 void check_values(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
-    const AssumedConvention& assumed = map.assumed;
-    if (!assumed.space && !assumed.axes && !assumed.midlevel) return;
     const Displacement thin = thin_out(map);
     const MapStatistics statistics = measure_map(thin.tiles, find_known_midlevel(map, MapMeaning::declared));
-    if (assumed.midlevel) add_mistakes(thin, statistics, findings);
-    if (map.type != DisplacementType::vector || (!assumed.space && !assumed.axes)) return;
+    if (map.assumed.midlevel) add_mistakes(thin, statistics, findings);
+    if (map.type != DisplacementType::vector) return;
     const bool has_few = mesh.face_sizes.size() <= kMostFaces && find_mesh_faults(mesh).is_sound();
     add_convention(map, guess_convention(thin, statistics, has_few ? &mesh : nullptr), findings);
 }
@@ -171,6 +169,7 @@ std::vector<Finding> check_map(const Displacement& map, const Scene& scene,
     if (!has_all_textures(map)) return findings;
     size_t count = 0;
     for (const uint32_t index : meshes) {
+        if (map.assumed == AssumedConvention{}) break;
         const Mesh& mesh = scene.meshes.at(index);
         add_range(map, mesh, findings);
         add_mesh_doubts(map, mesh, findings);
@@ -195,7 +194,7 @@ std::vector<Finding> find_doubtful_assumptions(const Scene& scene) {
     const std::vector<std::set<uint32_t>> meshes = list_meshes(scene);
     for (size_t index = 0; index < meshes.size(); ++index) {
         const Displacement& map = scene.displacements[index];
-        if (map.assumed == AssumedConvention{} || meshes[index].empty()) continue;
+        if (meshes[index].empty()) continue;
         for (Finding& finding : check_map(map, scene, meshes[index])) {
             finding.text = fmt::format("displacement '{}': {}", map.name, finding.text);
             findings.push_back(std::move(finding));

@@ -83,8 +83,8 @@ void describe_files(const Displacement& map, const MapStatistics& statistics, st
 std::string describe_zero(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics) {
     if (const auto known = find_known_midlevel(map, meaning))
         return known->x == known->y && known->y == known->z
-                   ? fmt::format("{:g}, as was said", known->x)
-                   : fmt::format("({:g}, {:g}, {:g}), as was said", known->x, known->y, known->z);
+                   ? fmt::format("{:g}, as declared", known->x)
+                   : fmt::format("({:g}, {:g}, {:g}), as declared", known->x, known->y, known->z);
     if (is_integer_type(statistics.type)) return "0.5: integers hold no negative values";
     if (statistics.is_centred_at_half) return "0.5: no value is negative, and the means are near 0.5";
     const bool has_negative = std::any_of(statistics.channels.begin(), statistics.channels.end(),

@@ -169,10 +169,10 @@ void find_missing_tiles(const MeshUvs& uvs, const Displacement& map, std::vector
     if (missing.empty()) return;
     std::set<int> found;
     for (const MapTile& tile : map.tiles) found.insert(tile.udim);
-    add_error(findings, "E-TILE",
-              "no file for tile(s) {} of the mesh, which will not be displaced there; found {}; export the "
-              "missing ones, or look at their names",
-              list_tiles(missing), list_tiles(found));
+    add_warning(findings, "W-GAP",
+                "no file for tile(s) {} of the mesh, which will not be displaced there; found {}; export the "
+                "missing ones, or look at their names",
+                list_tiles(missing), list_tiles(found));
 }
 
 /// Uvs outside of the unit square need tiles or a map that repeats.

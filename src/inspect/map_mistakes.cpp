@@ -228,6 +228,12 @@ void find_misfits(const Displacement& map, const MapStatistics& statistics, cons
                     texels, kFinestSide);
 }
 
+std::string advise_axes(const MapConvention& convention, DisplacementSpace space) {
+    const std::string presets = list_presets(convention.axes.value);
+    return fmt::format("write displacement.axes = {}{}", format_map_axes(convention.axes.value, space),
+                       presets.empty() ? "" : ", as presets " + presets);
+}
+
 void note_convention(const Displacement& map, MapMeaning meaning, const MapConvention& convention,
                      std::vector<Finding>& findings) {
     if (meaning != MapMeaning::declared || is_height(map, meaning)) return;
@@ -239,9 +245,13 @@ void note_convention(const Displacement& map, MapMeaning meaning, const MapConve
                  map.space == DisplacementSpace::tangent ? "tangent" : "object",
                  map.space == DisplacementSpace::tangent ? "object" : "tangent", convention.space.reason);
     if (is_other_space || !convention.axes.is_clear || map.space == DisplacementSpace::world) return;
-    if (!agrees_on_axes(convention, map))
-        add_note(findings, "I-AXES", "the {} axes are not what the values look like: {}",
-                 map.assumed.axes ? "assumed" : "declared", convention.axes.reason);
+    const char* origin = map.assumed.axes ? "assumed" : "declared";
+    if (contradicts_axes(convention, map))
+        add_warning(findings, "I-AXES", "the {} axes are not what the values look like: {}; {}", origin,
+                    convention.axes.reason, advise_axes(convention, map.space));
+    else if (!agrees_on_axes(convention, map))
+        add_note(findings, "I-AXES", "the {} axes are not what the values look like: {}", origin,
+                 convention.axes.reason);
 }
 
 } // namespace relief

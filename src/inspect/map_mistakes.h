@@ -31,6 +31,9 @@ void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapSta
 void find_misfits(const Displacement& map, const MapStatistics& statistics, const Mesh& mesh,
                   std::vector<Finding>& findings);
 
+/// The setting that makes axes those of the convention: "write displacement.axes = t,n,b, as presets ...".
+std::string advise_axes(const MapConvention& convention, DisplacementSpace space);
+
 /// Where what was declared is not what the values look like.
 void note_convention(const Displacement& map, MapMeaning meaning, const MapConvention& convention,
                      std::vector<Finding>& findings);

@@ -35,10 +35,26 @@ TEST(DoubtfulAssumptions, name_the_axes_that_the_values_speak_for) {
     EXPECT_TRUE(find(make_sculpt_texture(64), kAll).findings.empty());
 }
 
+TEST(DoubtfulAssumptions, doubt_declared_axes_where_the_values_are_clear) {
+    const Inspection wrong = find(make_sculpt_texture(64, kMudbox), {});
+    ASSERT_EQ(wrong.findings.size(), 1u);
+    EXPECT_EQ(wrong.findings[0].severity, Severity::warning);
+    EXPECT_HAS_PART(find_text(wrong, "I-AXES"), "axes t,b,n are declared");
+    EXPECT_HAS_PART(find_text(wrong, "I-AXES"), "displacement.axes = t,n,b, as presets mudbox");
+    EXPECT_TRUE(find(make_sculpt_texture(64), {}).findings.empty());
+    constexpr AxisMap kExchanged{{1, 0, 2}, {1, 1, 1}};
+    EXPECT_TRUE(find(make_sculpt_texture(64, kExchanged), {}).findings.empty()) << "t and b are less clear";
+}
+
+TEST(DoubtfulAssumptions, say_nothing_of_axes_that_somebody_knows_where_the_values_are_less_clear) {
+    auto texture = make_sculpt_texture(64, kMudbox);
+    // The first channel follows the one along the normal, which is 1.7 times as strong.
+    for (size_t k = 0; k < texture->floats.size(); k += 4) texture->floats[k] = texture->floats[k + 1] / 1.7f;
+    EXPECT_FALSE(has_code(find(texture, {}), "I-AXES"));
+    EXPECT_TRUE(has_code(find(texture, {.axes = true}), "I-AXES"));
+}
+
 TEST(DoubtfulAssumptions, say_nothing_of_what_was_stated) {
-    const auto texture = make_sculpt_texture(64, kMudbox);
-    EXPECT_TRUE(find(texture, {}).findings.empty());
-    EXPECT_TRUE(find(texture, {.midlevel = true, .wrap = true}).findings.empty());
     auto half = std::make_shared<Texture>(*make_sculpt_texture(64));
     for (float& value : half->floats) value = 0.5f + 0.5f * value;
     EXPECT_TRUE(has_code(find(half, kAll), "E-NONEG"));

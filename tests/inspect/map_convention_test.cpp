@@ -61,7 +61,11 @@ TEST(MapConvention, rows_the_other_way_up_turn_no_sign) {
 
 TEST(MapConvention, declared_axes_that_the_values_contradict_are_noted) {
     Displacement map = make_map(make_sculpt_texture(kSize, {{0, 2, 1}, {1, 1, 1}}));
-    EXPECT_HAS_PART(find_text(inspect_map(map, MapMeaning::declared), "I-AXES"), "the declared axes");
+    const Inspection declared = inspect_map(map, MapMeaning::declared);
+    EXPECT_HAS_PART(find_text(declared, "I-AXES"), "the declared axes");
+    EXPECT_HAS_PART(find_text(declared, "I-AXES"), "write displacement.axes = t,n,b, as presets mudbox");
+    for (const Finding& finding : declared.findings)
+        if (finding.code == "I-AXES") EXPECT_EQ(finding.severity, Severity::warning);
     map.assumed.axes = true;
     EXPECT_HAS_PART(find_text(inspect_map(map, MapMeaning::declared), "I-AXES"), "the assumed axes");
     map.axes = {{0, 2, 1}, {1, 1, 1}};

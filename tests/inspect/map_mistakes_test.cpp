@@ -71,7 +71,7 @@ TEST(MapMistakes, a_midlevel_of_zero_that_was_said_is_taken_at_its_word) {
     const Inspection inspection = inspect_map(map, MapMeaning::declared);
     EXPECT_EQ(count_severe(inspection), 0u);
     EXPECT_HAS_PART(find_text(inspection, "I-NONEG"), "midlevel 0.5");
-    EXPECT_HAS_PART(get_fact(inspection, "midlevel"), "0, as was said");
+    EXPECT_HAS_PART(get_fact(inspection, "midlevel"), "0, as declared");
     map = make_map(make_coded(SampleType::uint16, 1.2f, 0.5f));
     EXPECT_TRUE(has_code(inspect_map(map, MapMeaning::declared), "W-INT16"));
     map.has_midlevel = true;

@@ -134,9 +134,9 @@ TEST(MeshInspection, missing_tiles_are_listed) {
     for (Vec2f& uv : mesh.uvs) uv.x *= 4;
     const Displacement some = make_tiles({1001, 1003}), all = make_tiles({1001, 1002, 1003, 1004});
     const Inspection inspection = inspect_mesh(mesh, &some);
-    EXPECT_HAS_PART(find_text(inspection, "E-TILE"), "tile(s) 1002, 1004 of the mesh");
+    EXPECT_HAS_PART(find_text(inspection, "W-GAP"), "tile(s) 1002, 1004 of the mesh");
     EXPECT_EQ(get_fact(inspection, "map_tiles"), "1001, 1003");
-    EXPECT_FALSE(has_code(inspect_mesh(mesh, &all), "E-TILE"));
+    EXPECT_FALSE(has_code(inspect_mesh(mesh, &all), "W-GAP"));
 }
 
 TEST(MeshInspection, edges_with_three_faces_and_faces_inside_out_are_told) {
