@@ -36,7 +36,9 @@ SunDirection parse_sun(const std::string& text) {
     constexpr std::string_view kSun = "sun:";
     const std::vector<std::string> parts =
         text.starts_with(kSun) ? split(text.substr(kSun.size()), ',') : std::vector<std::string>();
-    if (parts.size() != 2) refuse_value("--light", text, "sun:AZIMUTH,ELEVATION in degrees");
+    if (parts.size() != 2)
+        refuse_value("--light", text, "sun:AZIMUTH,ELEVATION in degrees",
+                     "a sun at the left, 30 degrees high, is sun:-60,30; at the right sun:60,30");
     return {float(parse_number("--light", parts[0], -360, 360)),
             float(parse_number("--light", parts[1], -90, 90))};
 }
@@ -79,9 +81,12 @@ void add_camera_options(CLI::App& verb, AimArguments& a) {
         [&scene](const std::string& text) { scene.from = parse_point("--from", text); });
     add(verb, "--to", "x,y,z", "what it looks at; default with --from: the middle of the scene",
         [&scene](const std::string& text) { scene.to = parse_point("--to", text); });
-    add(verb, "--fov", "D", "its vertical angle, degrees", [&scene](const std::string& text) {
-        scene.fov_degrees = float(parse_number("--fov", text, 0.001, 179.999));
-    });
+    add(verb, "--fov", "D", "its vertical angle, degrees; what is framed stays as large, see --zoom",
+        [&scene](const std::string& text) {
+            scene.fov_degrees = float(parse_number("--fov", text, 0.001, 179.999));
+        });
+    add(verb, "--zoom", "F", "all F times as large, from the same place",
+        [&scene](const std::string& text) { scene.zoom = float(parse_number("--zoom", text, 0.01, 100)); });
     add(verb, "--view", "NAME", "all objects from front, back, left, right, top or three-quarter",
         [&scene](const std::string& text) {
             constexpr std::array<std::pair<std::string_view, View>, 6> kViews = {
@@ -97,6 +102,8 @@ void add_camera_options(CLI::App& verb, AimArguments& a) {
         ->group(kAimGroup);
     add(verb, "--turntable", "N", "N pictures of a turn of the camera: FILE.0001.png ...",
         [&a](const std::string& text) {
+            if (text.starts_with("-"))
+                refuse_value("--turntable", text, "a number of pictures", "a turn of 36: --turntable 36");
             a.turntable = int(parse_integer("--turntable", text, 1, 100000));
             a.scene.is_turntable = true;
         });

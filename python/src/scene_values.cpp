@@ -52,6 +52,8 @@ void read_option(const std::string& name, nb::handle given, AimOptions& aim) {
         aim.to = value.vector(point);
     } else if (name == "fov") {
         aim.fov_degrees = float(value.number(0.001, 179.999));
+    } else if (name == "zoom") {
+        aim.zoom = float(value.number(0.01, 100));
     } else if (name == "view") {
         aim.view = read_view(value);
     } else if (name == "frame_all") {
@@ -65,8 +67,8 @@ void read_option(const std::string& name, nb::handle given, AimOptions& aim) {
     } else if (name == "ground") {
         aim.ground = read_ground(value, given);
     } else {
-        constexpr std::string_view kNames[] = {"from_",      "to",           "fov",   "view",  "frame_all",
-                                               "env_rotate", "env_strength", "light", "ground"};
+        constexpr std::string_view kNames[] = {"from_",     "to",         "fov",          "zoom",  "view",
+                                               "frame_all", "env_rotate", "env_strength", "light", "ground"};
         throw Error(ErrorKind::usage,
                     {fmt::format("there is no keyword '{}'", name), "", suggest_word(name, kNames)});
     }

@@ -102,6 +102,8 @@ class SceneTest(unittest.TestCase):
         self.render(scene, background="transparent")
         scene.aim(from_=(1, 2, 3), fov=50)
         self.assertEqual((scene.camera["from"], scene.camera["fov_degrees"]), ([1, 2, 3], 50))
+        scene.aim(zoom=2)
+        self.assertAlmostEqual(np.tan(np.radians(scene.camera["fov_degrees"] / 2)), np.tan(np.radians(25)) / 2, 5)
 
     def test_a_mesh_file_renders_as_it_is(self):
         scenes.make_plane().save(self.folder / "plane.obj")

@@ -40,6 +40,22 @@ TEST_F(AimOptionsTest, a_view_frames_and_a_position_is_taken) {
     EXPECT_GT(count_covered(render("near.exr", {"--from", "0,0,40", "--fov", "5"})), 10 * far);
 }
 
+TEST_F(AimOptionsTest, a_zoom_makes_all_larger_from_the_same_place) {
+    const float far = count_covered(render("far.exr", {"--from", "0,0,40"}));
+    const float near = count_covered(render("near.exr", {"--from", "0,0,40", "--zoom", "3"}));
+    EXPECT_GT(near, 7 * far);
+    EXPECT_LT(near, 11 * far) << "nine times the area";
+}
+
+TEST_F(AimOptionsTest, a_saved_scene_tells_which_options_it_does_not_hold) {
+    const CommandResult result = render_bump("a.png", {"--background", "white", "--save-scene", "copy.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.output.find("copy.json without --background #ffffff"), std::string::npos)
+        << result.output;
+    const CommandResult whole = render_bump("b.png", {"--save-scene", "copy.json"});
+    EXPECT_EQ(whole.output.find("without"), std::string::npos) << whole.output;
+}
+
 TEST_F(AimOptionsTest, a_saved_scene_renders_the_same_picture) {
     render("a.exr", {"--view", "three-quarter", "--light", "sun:20,30", "--ground", "--env-strength", "2",
                      "--save-scene", "copy.json"});

@@ -25,7 +25,15 @@ void require_objects(const Scene& scene) {
                                        "give a position of the camera: from, to"});
 }
 
-void aim_camera(Scene& scene, const AimOptions& options, float aspect) {
+/// `zoom` times as large: the camera stays, its angle becomes another.
+void zoom_camera(Camera& camera, float zoom) {
+    if (!(zoom > 0))
+        throw Error(ErrorKind::usage, {fmt::format("zoom is {}, not a positive factor", zoom), "", ""});
+    const float tangent = std::tan(camera.fov_degrees * kRadians / 2) / zoom;
+    camera.fov_degrees = 2 * std::atan(tangent) / kRadians;
+}
+
+void place_camera(Scene& scene, const AimOptions& options, float aspect) {
     if (options.from && (options.view || options.frame_all))
         throw Error(ErrorKind::usage, {"the camera has one place: from, or one that frames all objects",
                                        scene.source, "leave out from, or view and frame-all"});
@@ -61,6 +69,11 @@ void aim_camera(Scene& scene, const AimOptions& options, float aspect) {
     camera.focus_distance = distance;
     if (length(cross(camera.up, camera.to - camera.from)) <= 1e-6f * distance) camera.up = {0, 0, -1};
     scene.camera = camera;
+}
+
+void aim_camera(Scene& scene, const AimOptions& options, float aspect) {
+    place_camera(scene, options, aspect);
+    if (options.zoom) zoom_camera(scene.camera, *options.zoom);
 }
 
 void aim_environment(Scene& scene, const AimOptions& options) {
@@ -144,8 +157,8 @@ uint64_t hash_aimed(const Scene& scene, Ground ground) {
 } // namespace
 
 void aim_scene(Scene& scene, const AimOptions& options, float aspect) {
-    const bool is_changed = options.from || options.to || options.fov_degrees || options.view ||
-                            options.frame_all || options.rotate_degrees || options.strength ||
+    const bool is_changed = options.from || options.to || options.fov_degrees || options.zoom ||
+                            options.view || options.frame_all || options.rotate_degrees || options.strength ||
                             !options.suns.empty() || options.ground != Ground::none;
     if (!is_changed) return;
     validate_scene(scene); // framing follows the indices of the meshes and the uvs into the maps
