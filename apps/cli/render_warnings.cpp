@@ -1,6 +1,7 @@
 #include "render_warnings.h"
 
 #include <cstdio>
+#include <mutex>
 #include <string_view>
 
 #include <utility>
@@ -37,6 +38,12 @@ std::string name_keys(std::string text) {
     return text;
 }
 
+/// What is done before the first ray.
+std::string describe_preparation(const std::string& step, EngineKind engine) {
+    return fmt::format("{}{}preparing{}", step, step.empty() ? "" : ": ",
+                       engine == EngineKind::vulkan ? ", and compiling kernels if the device is new" : "");
+}
+
 } // namespace
 
 void add_assumption_warnings(Scene& scene) {
@@ -48,10 +55,16 @@ std::string name_setting(std::string warning, bool is_mesh) {
 }
 
 RenderWatcher::RenderWatcher(const RenderOptions& options, size_t& told, std::string step)
-    : printer_(options.progress), options_(options), told_(told), step_(std::move(step)) {}
+    : printer_(options.progress),
+      options_(options),
+      told_(told),
+      step_(std::move(step)),
+      preparing_(printer_, describe_preparation(step_, options.settings.device.engine)) {}
 
 void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
     const bool is_mesh = is_mesh_file(options_.input);
+    std::unique_lock<std::mutex> lock;
+    if (told_ < warnings.size()) lock = preparing_.interject();
     for (; told_ < warnings.size(); ++told_)
         if (!options_.progress.is_quiet || options_.is_strict)
             fmt::print(stderr, "relief: warning: {}\n", name_setting(warnings[told_], is_mesh));
@@ -60,6 +73,7 @@ void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
 }
 
 void RenderWatcher::on_progress(const Progress& progress) {
+    preparing_.stop();
     if (progress.samples_done > 0) keep_picture();
     printer_.print(progress, step_);
 }

@@ -8,6 +8,7 @@
 #include "common/progress.h"
 #include "relief/scene.h"
 #include "render_options.h"
+#include "wait_notice.h"
 
 namespace relief::cli {
 
@@ -37,6 +38,7 @@ class RenderWatcher final : public RenderObserver {
     size_t& told_;
     std::string step_;
     bool is_refused_ = false;
+    WaitNotice preparing_;
 };
 
 } // namespace relief::cli
