@@ -89,9 +89,12 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
 void save_aimed_scene(const RenderOptions& options, const RenderSettings& settings, Scene scene) {
     const ImageSettings& image = settings.image;
     scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed, scene.picture.fps};
-    save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene,
-                    list_picture_options(options.aim));
-    fmt::print("wrote {}\n", options.aim.saved_scene.string());
+    const std::vector<std::string> words = list_picture_options(options.aim);
+    save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene, words);
+    fmt::print("wrote {}{}\n", options.aim.saved_scene.string(),
+               words.empty() ? std::string()
+                             : fmt::format(" without {}, which a scene does not hold: say it again with it",
+                                           fmt::join(words, " ")));
 }
 
 int render_scene(const RenderOptions& options, Scene scene, const Source& source, double start) {

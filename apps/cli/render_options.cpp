@@ -237,11 +237,14 @@ void add_report_options(CLI::App& verb, RenderOptions& o) {
     verb.add_flag("--strict", o.is_strict, "render nothing that there are warnings of: exit 6");
 }
 
-void check_input(const std::filesystem::path& input) {
+void check_input(const std::filesystem::path& input, const std::filesystem::path& vdm) {
     if (input.empty())
         throw Error(ErrorKind::usage,
                     {"no scene file or mesh given", "", "relief render SCENE.json -o OUT.exr"});
     refuse_foreign_file(input);
+    if (!vdm.empty() && is_mesh_file(vdm))
+        throw Error(ErrorKind::usage, {fmt::format("--vdm takes a map, and '{}' is a mesh", vdm.string()), "",
+                                       "the mesh stands first: relief render MESH --vdm MAP"});
     std::error_code code;
     if (!std::filesystem::is_directory(input, code)) return;
     const std::filesystem::path scene = input / "scene.json";
@@ -318,13 +321,13 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
         verb.get_option(name)->group(kResearchGroup);
     for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
                              "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
-                             "--color-space", "--clamp-indirect", "--skip-existing", "--progress"})
+                             "--color-space", "--clamp-indirect", "--skip-existing", "--tile", "--progress"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 
 void complete_render_options(RenderOptions& o) {
     complete_engine_options(o.engine, o.settings);
-    check_input(o.input);
+    check_input(o.input, o.mesh.displacement_map);
     if (!is_mesh_file(o.input) && !o.mesh_only.empty())
         throw Error(ErrorKind::usage,
                     {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),

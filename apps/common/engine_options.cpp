@@ -1,7 +1,9 @@
 #include "common/engine_options.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <string_view>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -27,6 +29,10 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
     add("--engine", "NAME", "cpu (default) or vulkan", [&s](const std::string& text) {
         constexpr std::array<Word<EngineKind>, 2> words{
             {{"cpu", EngineKind::cpu}, {"vulkan", EngineKind::vulkan}}};
+        constexpr std::array<std::string_view, 6> kOtherNames = {"gpu", "cuda",  "optix",
+                                                                 "vk",  "metal", "opencl"};
+        if (std::ranges::find(kOtherNames, text) != kOtherNames.end())
+            refuse_value("--engine", text, "one of: cpu, vulkan", "GPUs are used by --engine vulkan");
         s.device.engine = parse_word("--engine", text, words);
     });
     add("--device", "N", "of the Vulkan engine, as `relief devices` lists them; default: the best",

@@ -168,7 +168,9 @@ constexpr Synonym kSynonyms[] = {
     {"tone-mapping", "--tonemap", "--tonemap NAME"},
     {"view-transform", "--tonemap", "--tonemap NAME"},
     {"bit-depth", "--png-bits", "--png-bits 8, or 16"},
-    {"zoom", "--from", "--from x,y,z"},
+    {"closer", "--zoom", "--zoom F"},
+    {"distance", "--zoom", "--zoom F"},
+    {"magnify", "--zoom", "--zoom F", Shape::number, "--zoom {}"},
     {"lens", "--fov", "--fov DEGREES"},
     {"angle", "--view", "--view NAME"},
     {"side", "--view", "--view NAME"},
@@ -215,6 +217,10 @@ struct Note {
 constexpr Note kNotes[] = {
     {"material", "--spp", "materials stand in the scene file, under 'materials'"},
     {"subsurface", "--spp", "there is none yet; materials stand in the scene file, under 'materials'"},
+    {"mesh", "--spp", "a mesh stands without an option: relief render MESH"},
+    {"input", "--spp", "a scene or a mesh stands without an option: relief render SCENE|MESH"},
+    {"i", "--spp", "a scene or a mesh stands without an option: relief render SCENE|MESH"},
+    {"scene", "--spp", "a scene stands without an option: relief render SCENE"},
     {"units", "--spp", "lengths are those of the file: --vdm-scale F fits the map to the mesh"},
     {"unit", "--spp", "lengths are those of the file: --vdm-scale F fits the map to the mesh"},
 };

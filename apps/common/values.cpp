@@ -8,8 +8,9 @@
 
 namespace relief::cli {
 
-void refuse_value(const std::string& option, const std::string& text, const std::string& expected) {
-    throw Error(ErrorKind::usage, {fmt::format("'{}' is not {}", text, expected), option, ""});
+void refuse_value(const std::string& option, const std::string& text, const std::string& expected,
+                  const std::string& hint) {
+    throw Error(ErrorKind::usage, {fmt::format("'{}' is not {}", text, expected), option, hint});
 }
 
 namespace {
