@@ -34,11 +34,14 @@ int run_bench(const BenchOptions& options) {
     cli::WorkProgress progress(options.progress);
     const Report report = [&](const std::string& line) { progress.begin_step(line); };
     const SuiteResult outcome = suite.run(options, report);
+    progress.end_line();
     for (const ReportFile& file : outcome.files) {
         write_text_file(folder / file.name, file.text);
         fmt::print("wrote {}\n", (folder / file.name).string());
     }
+    report("drawing charts");
     const DrawnCharts charts = draw_charts(folder / outcome.files.front().name);
+    progress.end_line();
     for (const std::string& line : charts.lines) fmt::print("{}\n", line);
     if (!charts.failure.empty()) fmt::print(stderr, "relief bench: {}\n", charts.failure);
     if (!options.is_quick) print_goals(outcome.result["goals"]); // tiny pictures reach none
