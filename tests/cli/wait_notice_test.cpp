@@ -1,5 +1,6 @@
 // The line that tells of a render before its first ray.
 #include <chrono>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
