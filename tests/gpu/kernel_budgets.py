@@ -38,14 +38,14 @@ def list_kernels(program, device):
     return result["kernels"]
 
 
-def read_budgets(file):
+def read_budgets(text):
     """Lines of (kernel, case, {device: figures}); those of a kernel that come later count."""
     budgets = []
-    for line in file.read_text().splitlines():
+    for line in text.splitlines():
         if not line.strip() or line.startswith("#"):
             continue
         kernel, case, *figures, reason = [part.strip() for part in line.split("|")]
-        assert len(figures) == len(DEVICES) and reason, f"{file}: {line}"
+        assert len(figures) == len(DEVICES) and reason, line
         budgets.append((kernel, case, {device: [int(n) for n in figure.split()] for device, figure in zip(DEVICES, figures)}))
     return budgets
 
@@ -95,11 +95,11 @@ def main():
     file = pathlib.Path(__file__).parent / "kernel_budgets.txt"
     if sys.argv[2:] and sys.argv[2] != "--print":
         file = pathlib.Path(sys.argv[2])
-    budgets = read_budgets(file)
+    text = file.read_text()
+    budgets = read_budgets(text)
     lists = {device: list_kernels(program, device) for device in DEVICES}
     if "--print" in sys.argv:
-        goals = [budget for budget in budgets if len({tuple(f) for f in budget[2].values()}) == 1]
-        return print_lines(lists, goals)
+        return print_lines(lists, read_budgets(text[:text.index("# above the goals")]))
     faults = find_unused(lists[DEVICES[0]], budgets)
     for device, rows in lists.items():
         faults += find_faults(rows, budgets, device)
