@@ -37,8 +37,9 @@ SunDirection parse_sun(const std::string& text) {
     const std::vector<std::string> parts =
         text.starts_with(kSun) ? split(text.substr(kSun.size()), ',') : std::vector<std::string>();
     if (parts.size() != 2)
-        refuse_value("--light", text, "sun:AZIMUTH,ELEVATION in degrees",
-                     "a sun at the left, 30 degrees high, is sun:-60,30; at the right sun:60,30");
+        refuse_value(
+            "--light", text, "sun:AZIMUTH,ELEVATION in degrees",
+            "seen from +z a sun at the left, 30 degrees high, is sun:-60,30; at the right sun:60,30");
     return {float(parse_number("--light", parts[0], -360, 360)),
             float(parse_number("--light", parts[1], -90, 90))};
 }
@@ -204,7 +205,8 @@ void add_display_entries(const DisplayArguments& display, Image& image) {
 std::vector<std::string> list_picture_options(const AimArguments& arguments) {
     std::vector<std::string> words;
     const auto add = [&](const char* option, const std::string& value) {
-        if (!value.empty()) words.push_back(fmt::format("{} {}", option, value));
+        const char* quote = value.find('#') == std::string::npos ? "" : "'"; // a comment of the shell
+        if (!value.empty()) words.push_back(fmt::format("{} {}{}{}", option, quote, value, quote));
     };
     add("--background", arguments.background);
     add("--exposure", arguments.display.exposure);

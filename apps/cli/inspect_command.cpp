@@ -103,7 +103,7 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
              fmt::format("one tile of several, and the only one read; name them all as {}", pattern)});
     if (options.picture.empty()) return inspection;
     const auto stands_in_the_way = [](const Finding& finding) {
-        return finding.severity == Severity::error && finding.code != "E-TILE" && finding.code != "E-NONEG";
+        return finding.severity == Severity::error && finding.code != "E-NONEG";
     };
     const auto found =
         std::find_if(inspection.findings.begin(), inspection.findings.end(), stands_in_the_way);

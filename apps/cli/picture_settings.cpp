@@ -36,7 +36,7 @@ RenderSettings check_picture(const RenderOptions& options, Scene& scene) {
 }
 
 RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
-    add_assumption_warnings(scene);
+    add_assumption_warnings(scene, options);
     const RenderSettings settings = check_picture(options, scene);
     aim_scene(scene, choose_aim(options, settings.image),
               float(settings.image.width) / float(settings.image.height));

@@ -93,7 +93,7 @@ void save_aimed_scene(const RenderOptions& options, const RenderSettings& settin
     save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene, words);
     fmt::print("wrote {}{}\n", options.aim.saved_scene.string(),
                words.empty() ? std::string()
-                             : fmt::format(" without {}, which a scene does not hold: say it again with it",
+                             : fmt::format("; a scene does not hold {}: add that when you render it",
                                            fmt::join(words, " ")));
 }
 

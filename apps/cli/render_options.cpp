@@ -319,9 +319,10 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
          {"--seed", "--edits", "--pixel", "--pixel-error", "--bottom-cache", "--surface", "--lod",
           "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
-    for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
-                             "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
-                             "--color-space", "--clamp-indirect", "--skip-existing", "--tile", "--progress"})
+    for (const char* name :
+         {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate", "--type", "--frame",
+          "--lengths", "--encoding", "--wrap", "--png-bits", "--color-space", "--clamp-indirect",
+          "--skip-existing", "--tile", "--samples", "--progress"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 

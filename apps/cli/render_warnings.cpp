@@ -46,8 +46,13 @@ std::string describe_preparation(const std::string& step, EngineKind engine) {
 
 } // namespace
 
-void add_assumption_warnings(Scene& scene) {
-    for (const Finding& finding : find_doubtful_assumptions(scene)) scene.warnings.push_back(finding.text);
+void add_assumption_warnings(Scene& scene, const RenderOptions& options) {
+    for (const Finding& finding : find_doubtful_assumptions(scene)) {
+        if (finding.severity != Severity::note)
+            scene.warnings.push_back(finding.text);
+        else if (!options.progress.is_quiet)
+            fmt::print(stderr, "relief: note: {}\n", name_setting(finding.text, is_mesh_file(options.input)));
+    }
 }
 
 std::string name_setting(std::string warning, bool is_mesh) {

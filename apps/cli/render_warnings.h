@@ -12,8 +12,9 @@
 
 namespace relief::cli {
 
-/// Adds to a scene's warnings what speaks against assumptions about its maps.
-void add_assumption_warnings(Scene& scene);
+/// Adds to a scene's warnings what speaks against assumptions about its maps, and prints what speaks against
+/// what was declared, which is no warning: who declared it may know better.
+void add_assumption_warnings(Scene& scene, const RenderOptions& options);
 
 /// "displacement.axes = t,n,b" as the user writes it: an option with a mesh, a key in a scene file.
 std::string name_setting(std::string warning, bool is_mesh);

@@ -1,12 +1,12 @@
 #include "wait_notice.h"
 
-#include <chrono>
 #include <utility>
 
 namespace relief::cli {
 
-WaitNotice::WaitNotice(ProgressPrinter& printer, std::string step)
-    : printer_(printer), step_(std::move(step)), thread_([this] { run(); }) {}
+WaitNotice::WaitNotice(ProgressPrinter& printer, std::string step, std::chrono::milliseconds first,
+                       std::chrono::milliseconds next)
+    : printer_(printer), step_(std::move(step)), first_(first), next_(next), thread_([this] { run(); }) {}
 
 WaitNotice::~WaitNotice() {
     stop();
@@ -27,10 +27,9 @@ std::unique_lock<std::mutex> WaitNotice::interject() {
 
 void WaitNotice::run() {
     using Clock = std::chrono::steady_clock;
-    constexpr std::chrono::milliseconds kFirst{1000}, kNext{500};
     const Clock::time_point start = Clock::now();
     std::unique_lock lock(mutex_);
-    for (Clock::time_point next = start + kFirst;; next += kNext) {
+    for (Clock::time_point next = start + first_;; next += next_) {
         if (changed_.wait_until(lock, next, [this] { return is_stopped_; })) return;
         Progress progress;
         progress.fraction = -1;

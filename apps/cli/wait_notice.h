@@ -1,6 +1,7 @@
 // Tells that a render is still preparing, as long as nothing else is told.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -10,11 +11,13 @@
 
 namespace relief::cli {
 
-/// Prints `step` and the time since this was made, from the first second on, until stop().
+/// Prints `step` and the time since this was made, after `first` and every `next`, until stop().
 class WaitNotice {
   public:
-    /// `printer` outlives this object and is used by nothing else until stop().
-    WaitNotice(ProgressPrinter& printer, std::string step);
+    /// `printer` outlives this object and is used by nothing else until stop(), but under interject().
+    WaitNotice(ProgressPrinter& printer, std::string step,
+               std::chrono::milliseconds first = std::chrono::seconds(1),
+               std::chrono::milliseconds next = std::chrono::milliseconds(500));
     ~WaitNotice();
     WaitNotice(const WaitNotice&) = delete;
     WaitNotice& operator=(const WaitNotice&) = delete;
@@ -30,6 +33,7 @@ class WaitNotice {
 
     ProgressPrinter& printer_;
     const std::string step_;
+    const std::chrono::milliseconds first_, next_;
     std::mutex mutex_;
     std::condition_variable changed_;
     bool is_stopped_ = false;

@@ -31,7 +31,7 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
             {{"cpu", EngineKind::cpu}, {"vulkan", EngineKind::vulkan}}};
         constexpr std::array<std::string_view, 6> kOtherNames = {"gpu", "cuda",  "optix",
                                                                  "vk",  "metal", "opencl"};
-        if (std::ranges::find(kOtherNames, text) != kOtherNames.end())
+        if (std::ranges::find(kOtherNames, to_lower_case(text)) != kOtherNames.end())
             refuse_value("--engine", text, "one of: cpu, vulkan", "GPUs are used by --engine vulkan");
         s.device.engine = parse_word("--engine", text, words);
     });

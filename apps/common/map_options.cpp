@@ -78,7 +78,7 @@ void add_map_options(CLI::App& verb, MapOptions& options, const MapOptionPlace& 
     const bool is_target = !place.prefix.empty();
     const std::string start = "--" + place.prefix;
     adder.add(place.preset, "NAME", "the program: blender-brush, mudbox, ...",
-              [&options](const std::string& text) { options.preset = text; });
+              [&options](const std::string& text) { options.preset = to_lower_case(text); });
     adder.add_text(start + "type", "NAME", "vector or height", options.type);
     adder.add_text(start + "space", "NAME", "tangent, object or world", options.space);
     adder.add_text(start + "axes", "LIST", "where R, G, B point: t,b,n or x,-z,y ...", options.axes);

@@ -169,7 +169,7 @@ constexpr Synonym kSynonyms[] = {
     {"view-transform", "--tonemap", "--tonemap NAME"},
     {"bit-depth", "--png-bits", "--png-bits 8, or 16"},
     {"closer", "--zoom", "--zoom F"},
-    {"distance", "--zoom", "--zoom F"},
+    {"distance", "--from", "--from x,y,z"},
     {"magnify", "--zoom", "--zoom F", Shape::number, "--zoom {}"},
     {"lens", "--fov", "--fov DEGREES"},
     {"angle", "--view", "--view NAME"},
@@ -217,10 +217,10 @@ struct Note {
 constexpr Note kNotes[] = {
     {"material", "--spp", "materials stand in the scene file, under 'materials'"},
     {"subsurface", "--spp", "there is none yet; materials stand in the scene file, under 'materials'"},
-    {"mesh", "--spp", "a mesh stands without an option: relief render MESH"},
-    {"input", "--spp", "a scene or a mesh stands without an option: relief render SCENE|MESH"},
-    {"i", "--spp", "a scene or a mesh stands without an option: relief render SCENE|MESH"},
-    {"scene", "--spp", "a scene stands without an option: relief render SCENE"},
+    {"mesh", "--spp", "scenes and meshes stand without an option, in any place"},
+    {"input", "--spp", "scenes and meshes stand without an option, in any place"},
+    {"i", "--spp", "scenes and meshes stand without an option, in any place"},
+    {"scene", "--spp", "scenes and meshes stand without an option, in any place"},
     {"units", "--spp", "lengths are those of the file: --vdm-scale F fits the map to the mesh"},
     {"unit", "--spp", "lengths are those of the file: --vdm-scale F fits the map to the mesh"},
 };

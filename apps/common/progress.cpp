@@ -36,6 +36,9 @@ double compute_left(const Progress& progress) {
     return progress.fraction > 0 ? progress.elapsed_s * (1 - progress.fraction) / progress.fraction : -1;
 }
 
+/// What cannot be told, on a full disk, stops no work.
+void write_error(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
 bool is_render(const Progress& progress) { return progress.samples_total > 0; }
 
 bool is_end(const Progress& progress) {
@@ -99,7 +102,7 @@ ProgressPrinter::ProgressPrinter(const ProgressOptions& options)
 ProgressPrinter::~ProgressPrinter() { end_line(); }
 
 void ProgressPrinter::end_line() {
-    if (has_bar_) fmt::print(stderr, "\n");
+    if (has_bar_) write_error("\n");
     has_bar_ = false;
 }
 
@@ -110,20 +113,20 @@ void ProgressPrinter::print(const Progress& progress, const std::string& step) {
         return;
     }
     if (style_ == ProgressStyle::json) {
-        fmt::print(stderr, "{}\n", format_progress_json(progress, step));
+        write_error(format_progress_json(progress, step) + "\n");
         return;
     }
     const auto now = std::chrono::steady_clock::now();
     if (now - last_line_ < kPlainInterval && step == last_step_ && !(is_end(progress) && tells_end_)) return;
     last_line_ = now, last_step_ = step, tells_end_ = true;
-    fmt::print(stderr, "{}\n", format_progress(progress, step));
+    write_error(format_progress(progress, step) + "\n");
 }
 
 void ProgressPrinter::print_bar(const Progress& progress, const std::string& step) {
     const int filled = std::max(0, int(progress.fraction * kBarWidth));
     // "\x1b[K" clears the rest of a longer previous line.
-    fmt::print(stderr, "\r[{:<{}}] {}\x1b[K", std::string(size_t(filled), '#'), kBarWidth,
-               format_progress(progress, step));
+    write_error(fmt::format("\r[{:<{}}] {}\x1b[K", std::string(size_t(filled), '#'), kBarWidth,
+                            format_progress(progress, step)));
     std::fflush(stderr);
     has_bar_ = true;
 }

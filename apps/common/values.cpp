@@ -13,6 +13,11 @@ void refuse_value(const std::string& option, const std::string& text, const std:
     throw Error(ErrorKind::usage, {fmt::format("'{}' is not {}", text, expected), option, hint});
 }
 
+std::string to_lower_case(std::string text) {
+    for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
 namespace {
 
 /// Where the digits begin: from_chars takes no plus sign.

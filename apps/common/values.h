@@ -19,6 +19,9 @@ namespace relief::cli {
 [[noreturn]] void refuse_value(const std::string& option, const std::string& text,
                                const std::string& expected, const std::string& hint = {});
 
+/// ASCII letters in lower case.
+std::string to_lower_case(std::string text);
+
 /// Integer in [low, high]; anything else, or trailing text, is a usage error that tells the range.
 int64_t parse_integer(const std::string& option, const std::string& text, int64_t low, int64_t high);
 

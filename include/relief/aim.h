@@ -27,9 +27,10 @@ enum class Ground { none, plane, shadow };
 struct AimOptions {
     std::optional<Vec3f> from, ///< not with view or frame_all
         to;                    ///< of the camera; without `to` the camera looks at the middle of the scene
-    std::optional<float> fov_degrees;    ///< vertical, in (0, 180)
-    std::optional<float> zoom;           ///< factor on the size of all that is seen: the angle narrows
-    std::optional<View> view;            ///< also frames all objects
+    std::optional<float> fov_degrees; ///< vertical, in (0, 180)
+    std::optional<float>
+        zoom;                 ///< factor on the size of all that is seen, by the camera's angle as it is then
+    std::optional<View> view; ///< also frames all objects
     bool is_turntable = false;           ///< framed objects stay in the picture through a whole turn_camera
     bool frame_all = false;              ///< the camera keeps its direction and shows all objects
     std::optional<float> rotate_degrees; ///< of the environment

@@ -73,10 +73,10 @@ Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* 
 /// The same map with the most probable space, axes and midlevel; what cannot be determined is unchanged.
 Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
 
-/// What speaks against the assumptions about the maps of a scene (Displacement::assumed), and clearly against
-/// axes that were declared: each finding names the setting that says it, "displacement.axes = t,n,b". At most
-/// 2^18 texels a map are looked at. That seams speak for object space is left to render(), which
-/// warns of it. The scene must be valid.
+/// What speaks against the assumptions about the maps of a scene (Displacement::assumed): warnings; and a
+/// note where the values of a map clearly speak against axes that were declared. Each finding names the
+/// setting that says it, "displacement.axes = t,n,b". At most 2^18 texels a map are looked at. That seams
+/// speak for object space is left to render(), which warns of it. The scene must be valid.
 std::vector<Finding> find_doubtful_assumptions(const Scene& scene);
 
 /// Contact sheet of a scene seen by its camera, four pictures of `settings.image.width` x

@@ -217,13 +217,14 @@ class Scene:
         return name
 
     def aim(self, view: Optional[str] = None, from_: Any = None, to: Any = None, fov: Optional[float] = None,
-            zoom: Optional[float] = None, frame_all: bool = False, env_rotate: Optional[float] = None, env_strength: Optional[float] = None,
-            light: Any = None, ground: Union[bool, str] = False, size: tuple[int, int] = (1280, 720)) -> None:
+            zoom: Optional[float] = None, frame_all: bool = False, env_rotate: Optional[float] = None,
+            env_strength: Optional[float] = None, light: Any = None, ground: Union[bool, str] = False,
+            size: tuple[int, int] = (1280, 720)) -> None:
         """Moves the camera and changes the light, as the options of `relief render` of these names do.
 
-        view: front, back, left, right, top or three-quarter. from_, to: (x, y, z). fov: vertical, degrees. zoom: all
-        as many times as large. env_rotate: degrees. light: suns in place of the scene's, a list of (azimuth, elevation), degrees. ground: True, or "shadow".
-        size: of the picture to come."""
+        view: front, back, left, right, top or three-quarter. from_, to: (x, y, z). fov: vertical, degrees. zoom: all so
+        many times as large as the camera shows it now. env_rotate: degrees. light: suns in place of the scene's, a list of
+        (azimuth, elevation), degrees. ground: True, or "shadow". size: of the picture to come."""
         parsed = self._parse()
         suns = None if light is None else [light] if np.ndim(light) == 1 else list(light)
         parsed.aim({"view": view, "from_": from_, "to": to, "fov": fov, "zoom": zoom, "frame_all": frame_all,

@@ -31,10 +31,10 @@ struct NormalChannel {
     bool is_clear = false;
 };
 
-NormalChannel find_normal_channel(const MapStatistics& statistics) {
-    std::array<double, 3> strength{};
+NormalChannel find_normal_channel(const MapStatistics& statistics, const Vec3f& scale) {
+    std::array<double, 3> strength{scale.x, scale.y, scale.z};
     for (size_t c = 0; c < 3; ++c)
-        strength[c] = std::fabs(statistics.channels[c].mean - statistics.midlevel[c]);
+        strength[c] = std::fabs(strength[c] * (statistics.channels[c].mean - statistics.midlevel[c]));
     NormalChannel best;
     best.channel = size_t(std::max_element(strength.begin(), strength.end()) - strength.begin());
     const double next = std::max(strength[(best.channel + 1) % 3], strength[(best.channel + 2) % 3]);
@@ -87,7 +87,7 @@ ptrdiff_t find_third_axis(const AxisMap& axes) {
 AxisMap make_usual_axes(const NormalChannel& normal) { return make_axes(normal, 0); }
 
 void guess_tangent_axes(const Displacement& map, const MapStatistics& statistics, MapConvention& result) {
-    const NormalChannel normal = find_normal_channel(statistics);
+    const NormalChannel normal = find_normal_channel(statistics, map.scale);
     result.axes.is_clear = normal.is_clear, result.axes_lead = normal.ratio;
     if (!normal.is_clear) {
         result.axes.reason = "no channel has a mean far more one-sided than the others";
@@ -145,7 +145,6 @@ void guess_object_axes(const MapSamples& samples, MapConvention& result) {
         }
     }
     result.axes.is_clear = result.is_order_clear = best >= kLeastRise && best > kClearRatio * next;
-    result.axes_lead = next > 0 ? best / next : kMostLead;
     if (result.axes.is_clear) {
         result.axes.reason = fmt::format(
             "so the surface moves along its normals ({:.2f} of all movement, {:.2f} in the next best order)",
@@ -329,9 +328,8 @@ bool agrees_on_axes(const MapConvention& convention, const Displacement& map) {
 
 bool contradicts_axes(const MapConvention& convention, const Displacement& map) {
     constexpr double kCertainLead = 2;
-    if (!convention.axes.is_clear || convention.axes_lead < kCertainLead) return false;
-    if (map.space == DisplacementSpace::object) return !agrees_on_axes(convention, map);
-    return find_third_axis(convention.axes.value) != find_third_axis(map.axes);
+    return convention.axes.is_clear && convention.axes_lead >= kCertainLead &&
+           find_third_axis(convention.axes.value) != find_third_axis(map.axes);
 }
 
 std::optional<Guess<DisplacementSpace>> guess_space_by_seams(const std::vector<SeamSample>& seams) {

@@ -22,7 +22,8 @@ struct MapConvention {
     Guess<AxisMap> axes;            ///< clear where the axis along the normal is
     bool is_space_by_seams = false; ///< the uv seams of the mesh speak for the space
     bool is_order_clear = false;    ///< also which channels go along t and b, or x, y and z
-    double axes_lead = 0;           ///< evidence for the axes over that for the next best, as a factor
+    double axes_lead =
+        0; ///< in tangent space: evidence for the channel along the normal over that for the next
 };
 
 /// `map`: its tiles count, and its scale, wrap, flip_v and is_udim. `mesh` may be null.
@@ -31,8 +32,8 @@ MapConvention guess_convention(const Displacement& map, const MapStatistics& sta
 /// Whether the axes of `map` are those of a convention, as far as it is clear about them.
 bool agrees_on_axes(const MapConvention& convention, const Displacement& map);
 
-/// Whether the values speak so clearly for another channel along the normal (in object space: for another
-/// order) that even axes which somebody declared are doubtful.
+/// Whether the values of a map in tangent space speak so clearly for another channel along the normal that
+/// even axes which somebody declared are doubtful.
 bool contradicts_axes(const MapConvention& convention, const Displacement& map);
 
 /// Which space the uv seams speak for; nothing where they do not tell.

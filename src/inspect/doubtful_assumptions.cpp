@@ -93,12 +93,14 @@ void add_convention(const Displacement& map, const MapConvention& convention,
             "tangent space is assumed, but it looks like object space: {}; write displacement.space = object",
             convention.space.reason);
     if (is_object || !convention.axes.is_clear) return;
-    const bool is_doubtful =
-        map.assumed.axes ? !agrees_on_axes(convention, map) : contradicts_axes(convention, map);
-    if (!is_doubtful) return;
-    add_warning(findings, "I-AXES", "axes {} are {}, but {}; {}", format_map_axes(map.axes, map.space),
-                map.assumed.axes ? "assumed" : "declared", convention.axes.reason,
-                advise_axes(convention, map.space));
+    if (map.assumed.axes && !agrees_on_axes(convention, map))
+        add_warning(findings, "I-AXES", "axes {} are assumed, but {}; {}",
+                    format_map_axes(map.axes, map.space), convention.axes.reason,
+                    advise_axes(convention, map.space));
+    else if (!map.assumed.axes && contradicts_axes(convention, map))
+        add_note(findings, "I-AXES", "axes {} are declared, but {}; if the relief looks wrong, {}",
+                 format_map_axes(map.axes, map.space), convention.axes.reason,
+                 advise_axes(convention, map.space));
 }
 
 /// One image that does not repeat is stretched from its edge over uvs outside of it.
@@ -155,10 +157,12 @@ void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Find
 
 /// What the values of the map say; the convention is tried on one of its meshes.
 void check_values(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
+    const bool has_axes = map.type == DisplacementType::vector && map.space == DisplacementSpace::tangent;
+    if (!has_axes && !map.assumed.midlevel) return;
     const Displacement thin = thin_out(map);
     const MapStatistics statistics = measure_map(thin.tiles, find_known_midlevel(map, MapMeaning::declared));
     if (map.assumed.midlevel) add_mistakes(thin, statistics, findings);
-    if (map.type != DisplacementType::vector) return;
+    if (!has_axes) return;
     const bool has_few = mesh.face_sizes.size() <= kMostFaces && find_mesh_faults(mesh).is_sound();
     add_convention(map, guess_convention(thin, statistics, has_few ? &mesh : nullptr), findings);
 }

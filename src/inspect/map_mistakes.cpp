@@ -245,13 +245,10 @@ void note_convention(const Displacement& map, MapMeaning meaning, const MapConve
                  map.space == DisplacementSpace::tangent ? "tangent" : "object",
                  map.space == DisplacementSpace::tangent ? "object" : "tangent", convention.space.reason);
     if (is_other_space || !convention.axes.is_clear || map.space == DisplacementSpace::world) return;
-    const char* origin = map.assumed.axes ? "assumed" : "declared";
-    if (contradicts_axes(convention, map))
-        add_warning(findings, "I-AXES", "the {} axes are not what the values look like: {}; {}", origin,
-                    convention.axes.reason, advise_axes(convention, map.space));
-    else if (!agrees_on_axes(convention, map))
-        add_note(findings, "I-AXES", "the {} axes are not what the values look like: {}", origin,
-                 convention.axes.reason);
+    if (!agrees_on_axes(convention, map))
+        add_note(findings, "I-AXES", "the {} axes are not what the values look like: {}; {}",
+                 map.assumed.axes ? "assumed" : "declared", convention.axes.reason,
+                 advise_axes(convention, map.space));
 }
 
 } // namespace relief

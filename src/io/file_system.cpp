@@ -9,7 +9,6 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
-#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -25,19 +24,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string replace_star(std::string name, std::string_view by) {
-    return name.replace(name.find('*'), 1, by);
-}
-
-/// A name with a wildcard, which stands for tiles here as `<UDIM>` and for frames as ####.
-std::string suggest_pattern(const std::string& name) {
-    return fmt::format("wildcards are not known: tiles are named {}, frames {}", replace_star(name, "<UDIM>"),
-                       replace_star(name, "####"));
-}
-
 std::string suggest_file(const fs::path& file) {
-    if (const std::string name = file.filename().string(); name.find('*') != std::string::npos)
-        return suggest_pattern(name);
+    if (file.filename().string().find('*') != std::string::npos) return "no file has a name of this pattern";
     std::error_code code;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, code))

@@ -1,8 +1,6 @@
 #include "scene/displacement_conventions.h"
 
 #include <array>
-#include <cctype>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,12 +30,6 @@ constexpr std::array<MapPreset, 10> kPresets = {{{"blender-brush", "t,b,n", {}},
                                        "with a minus where one points backwards: t,-n,b"});
 }
 
-std::string to_lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return lower;
-}
-
 std::string_view trim(std::string_view text) {
     const size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
     return begin == std::string_view::npos ? std::string_view() : text.substr(begin, end - begin + 1);
@@ -54,18 +46,17 @@ std::span<const std::string_view> get_preset_names() {
     return kNames;
 }
 
-const MapPreset& find_preset(std::string_view text) {
-    const std::string name = to_lower_case(text);
+const MapPreset& find_preset(std::string_view name) {
     for (const MapPreset& preset : kPresets)
         if (preset.name == name) return preset;
     if (name == "zbrush" || name.starts_with("zbrush:"))
         throw Error(
             ErrorKind::bad_input,
-            {fmt::format("preset '{}' does not say where the channels point", text), "",
+            {fmt::format("preset '{}' does not say where the channels point", name), "",
              "ZBrush writes any of 48 orders by its codes FlipAndSwitch and TangentFlipAndSwitch, which are "
              "nowhere listed: give the axes, which 'relief inspect MAP' reads off the map"});
     throw Error(ErrorKind::bad_input,
-                {fmt::format("unknown preset '{}'", text), "", suggest_word(name, get_preset_names())});
+                {fmt::format("unknown preset '{}'", name), "", suggest_word(name, get_preset_names())});
 }
 
 MapFilter parse_texture_filter(std::string_view text) {

@@ -50,10 +50,11 @@ TEST_F(AimOptionsTest, a_zoom_makes_all_larger_from_the_same_place) {
 TEST_F(AimOptionsTest, a_saved_scene_tells_which_options_it_does_not_hold) {
     const CommandResult result = render_bump("a.png", {"--background", "white", "--save-scene", "copy.json"});
     ASSERT_EQ(result.exit_code, 0) << result.errors;
-    EXPECT_NE(result.output.find("copy.json without --background #ffffff"), std::string::npos)
+    EXPECT_NE(result.output.find("copy.json; a scene does not hold --background '#ffffff': add that"),
+              std::string::npos)
         << result.output;
     const CommandResult whole = render_bump("b.png", {"--save-scene", "copy.json"});
-    EXPECT_EQ(whole.output.find("without"), std::string::npos) << whole.output;
+    EXPECT_EQ(whole.output.find("does not hold"), std::string::npos) << whole.output;
 }
 
 TEST_F(AimOptionsTest, a_saved_scene_renders_the_same_picture) {

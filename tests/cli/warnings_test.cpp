@@ -58,7 +58,12 @@ TEST_F(Warnings, axes_that_the_values_contradict_name_the_option) {
     expect_warning({"--vdm", "swapped.exr"}, "write --axes t,n,b, as presets mudbox");
     expect_silence({"--vdm", "swapped.exr", "--axes", "t,n,b"});
     expect_silence({"--vdm", "swapped.exr", "--preset", "mudbox"});
-    expect_silence({"--vdm", "swapped.exr", "--axes", "t,b,n"}); // said is said
+    const CommandResult declared = render({"--vdm", "swapped.exr", "--axes", "t,b,n", "--strict"});
+    EXPECT_EQ(declared.exit_code, 0) << "said is said: " << declared.errors;
+    EXPECT_TRUE(
+        contains(declared.errors, "relief: note: displacement 'swapped': axes t,b,n are declared, but "))
+        << declared.errors;
+    EXPECT_TRUE(contains(declared.errors, "write --axes t,n,b, as presets mudbox")) << declared.errors;
     expect_silence({"--vdm", "bump.exr"});
 }
 

@@ -38,12 +38,18 @@ TEST(DoubtfulAssumptions, name_the_axes_that_the_values_speak_for) {
 TEST(DoubtfulAssumptions, doubt_declared_axes_where_the_values_are_clear) {
     const Inspection wrong = find(make_sculpt_texture(64, kMudbox), {});
     ASSERT_EQ(wrong.findings.size(), 1u);
-    EXPECT_EQ(wrong.findings[0].severity, Severity::warning);
+    EXPECT_EQ(wrong.findings[0].severity, Severity::note) << "who declared them may know better";
     EXPECT_HAS_PART(find_text(wrong, "I-AXES"), "axes t,b,n are declared");
     EXPECT_HAS_PART(find_text(wrong, "I-AXES"), "displacement.axes = t,n,b, as presets mudbox");
     EXPECT_TRUE(find(make_sculpt_texture(64), {}).findings.empty());
     constexpr AxisMap kExchanged{{1, 0, 2}, {1, 1, 1}};
     EXPECT_TRUE(find(make_sculpt_texture(64, kExchanged), {}).findings.empty()) << "t and b are less clear";
+}
+
+TEST(DoubtfulAssumptions, measure_channels_by_their_scale) {
+    Displacement map = make_map(make_sculpt_texture(64, kMudbox));
+    map.scale = {1, 0.01f, 20};
+    EXPECT_TRUE(find_doubtful_assumptions(make_body_scene(make_sculpt_plane(), std::move(map))).empty());
 }
 
 TEST(DoubtfulAssumptions, say_nothing_of_axes_that_somebody_knows_where_the_values_are_less_clear) {

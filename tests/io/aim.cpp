@@ -53,6 +53,20 @@ Vec2f measure_reach(const Scene& scene, const Camera& camera, float aspect) {
     return reach;
 }
 
+TEST_F(Aim, a_zoom_changes_the_angle_of_the_camera_as_it_stands) {
+    Scene framed = make_two_boxes();
+    aim_scene(framed, {.view = View::front}, 1);
+    for (const float zoom : {0.5f, 1.0f, 4.0f}) {
+        Scene zoomed = make_two_boxes();
+        aim_scene(zoomed, {.zoom = zoom, .view = View::front}, 1);
+        EXPECT_EQ(zoomed.camera.from, framed.camera.from);
+        const float reach = measure_reach(framed, framed.camera, 1).x;
+        EXPECT_NEAR(measure_reach(zoomed, zoomed.camera, 1).x, zoom * reach, 1e-3f * zoom);
+    }
+    for (const float zoom : {0.0f, -1.0f, NAN, INFINITY, 1e-6f})
+        EXPECT_HAS(message_of([&] { aim_scene(framed, {.zoom = zoom}, 1); }, ErrorKind::usage), "zoom");
+}
+
 TEST_F(Aim, every_view_shows_all_objects_and_fills_the_picture) {
     for (const View view :
          {View::front, View::back, View::left, View::right, View::top, View::three_quarter, View::automatic})

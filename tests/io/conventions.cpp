@@ -215,6 +215,8 @@ TEST_F(Conventions, tiles_are_found_by_the_names_of_every_program) {
     EXPECT_EQ(get_tiles("mud_<UVTILE>.exr"), (std::vector{1001, 1022}));
     EXPECT_EQ(get_tiles("old_<uvtile>.exr"), (std::vector{1001, 1020}));
     EXPECT_HAS(message_of([&] { load("none_<UVTILE>.exr"); }), "no tile file found");
+    EXPECT_HAS(message_of([&] { load("m_vdm.*.exr"); }),
+               "tiles named m_vdm.<UDIM>.exr, or frames named m_vdm.####.exr");
     write_tile("two_u1_v1.exr"), write_tile("two_u01_v1.exr");
     EXPECT_HAS(message_of([&] { load("two_<UVTILE>.exr"); }), "two files are tile 1001");
 }

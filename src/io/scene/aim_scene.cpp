@@ -27,10 +27,15 @@ void require_objects(const Scene& scene) {
 
 /// `zoom` times as large: the camera stays, its angle becomes another.
 void zoom_camera(Camera& camera, float zoom) {
-    if (!(zoom > 0))
-        throw Error(ErrorKind::usage, {fmt::format("zoom is {}, not a positive factor", zoom), "", ""});
+    constexpr float kWidest = 179;
     const float tangent = std::tan(camera.fov_degrees * kRadians / 2) / zoom;
-    camera.fov_degrees = 2 * std::atan(tangent) / kRadians;
+    const float fov = 2 * std::atan(tangent) / kRadians;
+    if (!(zoom > 0 && fov > 0 && fov <= kWidest))
+        throw Error(ErrorKind::usage,
+                    {fmt::format("zoom {} of a camera of {:.4g} degrees makes one of {:.4g}", zoom,
+                                 camera.fov_degrees, fov),
+                     "", fmt::format("its angle may be up to {}", kWidest)});
+    camera.fov_degrees = fov;
 }
 
 void place_camera(Scene& scene, const AimOptions& options, float aspect) {

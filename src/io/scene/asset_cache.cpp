@@ -171,6 +171,7 @@ std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse 
     if (const SequenceFiles* files = find_blend(file)) return load_blend(*files);
     std::vector<MapTile> tiles;
     if (!has_tile_token(file)) {
+        if (!find_given(file)) refuse_wildcard(resolve(file));
         tiles.push_back({1001, load(file, use, channel, space)});
         if (find_given(file) || !single_tiles_.insert(file).second) return tiles;
         if (const std::string pattern = find_tile_pattern(resolve(file)); !pattern.empty())

@@ -127,6 +127,17 @@ std::optional<std::pair<size_t, size_t>> find_tile_word(const std::string& stem,
 
 } // namespace
 
+void refuse_wildcard(const fs::path& file) {
+    const std::string name = file.filename().string();
+    const size_t star = name.find('*');
+    std::error_code code;
+    if (star == std::string::npos || fs::exists(file, code)) return;
+    const auto replace_star = [&](const char* by) { return std::string(name).replace(star, 1, by); };
+    throw Error(ErrorKind::bad_input, {"file not found", file.string(),
+                                       fmt::format("a map is one file, or tiles named {}, or frames named {}",
+                                                   replace_star("<UDIM>"), replace_star("####"))});
+}
+
 bool has_tile_token(const std::string& file) { return find_token(file) != nullptr; }
 
 std::vector<std::pair<int, fs::path>> find_tiles(const fs::path& pattern) {
