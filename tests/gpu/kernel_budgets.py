@@ -64,7 +64,7 @@ def find_faults(rows, budgets, device):
         limits = [budget for budget in budgets if is_for(budget, row)][-1][2][device]
         faults += [f"{row['kernel']} ({row['cases'][0]}, {row['program']}) on {device}: {key} {value}, its budget is {limit}"
                    for key, value, limit in zip(KEYS, measure(row), limits) if value > limit]
-        if row.get("shared_bytes", 0) > SHARED_BYTES and row["program"] == "Compute Shader":
+        if row["program"] == "Compute Shader" and row["shared_bytes"] > SHARED_BYTES:
             faults.append(f"{row['kernel']} ({row['cases'][0]}) on {device}: shared_bytes {row['shared_bytes']}")
     return faults
 

@@ -325,12 +325,12 @@ class TreeBatch : public GpuTest {
         // Products below the normal floats, which a device may take for zero, put hits out of their boxes.
         for (uint32_t k = 0; k < kRayCount; ++k) {
             const TreeHit& hit = truths[k].nearest = own.hits[k];
-            const bool is_outside =
-                hit.primitive != kNone && test::ends_before_box(rays[k], set.triangles[hit.primitive], hit.t);
-            truths[k].is_doubtful |= is_outside;
-            outside += is_outside;
+            if (hit.primitive == kNone) continue;
+            const bool is_outside = test::ends_before_box(rays[k], set.triangles[hit.primitive], hit.t);
+            truths[k].is_doubtful |= is_outside, outside += is_outside;
         }
-        EXPECT_LE(outside, set.name == "tiny" ? kRayCount / 5 : kRayCount / 10); // 55, 25 seen
+        const bool is_flat = set.name == "floor" || set.name == "flat and repeated"; // on an H200 8 and 25
+        EXPECT_LE(outside, set.name == "tiny" ? kRayCount / 5 : is_flat ? 30 : kRayCount / 100) << set.name;
         return truths;
     }
 

@@ -40,7 +40,7 @@ vec3 find_triangle_corner(SurfaceData s, HitData hit, uint k) {
 vec3 find_smooth_normal(SurfaceData s, HitData hit, uint turn) {
     uvec4 quad = load_quad(s, hit.patch_index);
     vec2 at = vec2(hit.u, hit.v);
-    uint around = find_cell_corner(hit, turn - 1u);
+    uint around = find_cell_corner(hit, max(turn, 1u) - 1u);
     if (s.map == kNone) return turn == 0u ? compute_plain_normal(s, quad, at) : load_normal(s, quad[around]);
     if (kTerminators != kAllTerminators) return vec3(0.0);
     uint level = packed_patch_level(hit.levels);
