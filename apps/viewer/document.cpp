@@ -23,16 +23,6 @@ MapTile& find_map_tile(Displacement& map, int udim) {
                  "paint where the map has one"});
 }
 
-/// Names tell maps apart in edits and in files.
-void make_names_distinct(std::vector<Displacement>& maps) {
-    std::set<std::string> taken;
-    for (Displacement& map : maps) {
-        const std::string base = map.name.empty() ? "map" : map.name;
-        map.name = base;
-        for (int k = 2; !taken.insert(map.name).second; ++k) map.name = fmt::format("{}_{}", base, k);
-    }
-}
-
 std::vector<std::string> list_doubts(const Scene& scene) {
     std::vector<std::string> texts;
     for (const Finding& finding : find_doubtful_assumptions(scene)) texts.push_back(finding.text);
@@ -47,6 +37,15 @@ std::string make_stem(std::string name) {
 
 } // namespace
 
+void make_names_distinct(std::vector<Displacement>& maps) {
+    std::set<std::string> taken;
+    for (Displacement& map : maps) {
+        const std::string base = map.name.empty() ? "map" : map.name;
+        map.name = base;
+        for (int k = 2; !taken.insert(map.name).second; ++k) map.name = fmt::format("{}_{}", base, k);
+    }
+}
+
 std::filesystem::path name_tile(const std::filesystem::path& pattern, int udim) {
     constexpr std::string_view kToken = "<UDIM>";
     std::string name = pattern.string();
@@ -54,26 +53,29 @@ std::filesystem::path name_tile(const std::filesystem::path& pattern, int udim) 
     return place == std::string::npos ? name : name.replace(place, kToken.size(), std::to_string(udim));
 }
 
-int find_first_frame(const Shot& shot) {
-    return shot.frames().empty() ? 1 : *std::ranges::min_element(shot.frames());
-}
-
-LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot) {
+LoadedInput load_input(const SceneInput& input) {
+    LoadedInput loaded;
     if (is_mesh_file(input.file)) {
-        Scene scene = load_mesh_scene(input.file, input.mesh);
-        std::vector<std::string> doubts = list_doubts(scene);
-        return {std::move(scene), nullptr, std::move(doubts)};
+        loaded.scene = load_mesh_scene(input.file, input.mesh);
+        loaded.meshes = share_meshes(loaded.scene.meshes);
+        loaded.doubts = list_doubts(loaded.scene);
+        return loaded;
     }
     if (input.file.extension() != ".json") {
         refuse_foreign_file(input.file);
         throw Error(ErrorKind::usage, {"this is neither a scene nor a mesh", input.file.string(),
                                        "a map goes with its mesh: relief view MESH --vdm MAP"});
     }
-    if (!shot) shot = std::make_shared<Shot>(input.file, input.mesh.reader);
-    Scene scene = shot->load(input.frame.value_or(find_first_frame(*shot)));
-    if (!shot->is_animated()) shot.reset(); // it holds all textures
-    std::vector<std::string> doubts = list_doubts(scene);
-    return {std::move(scene), std::move(shot), std::move(doubts)};
+    loaded.shot = std::make_shared<ShotReader>(input.file, input.mesh.reader);
+    loaded.frames = loaded.shot->frames();
+    loaded.frame = input.frame.value_or(loaded.frames.empty() ? 1 : std::ranges::min(loaded.frames));
+    ShotFrame first = loaded.shot->read(loaded.frame);
+    loaded.scene = std::move(*first.scene);
+    loaded.meshes = std::move(first.meshes);
+    loaded.content = first.content;
+    if (!loaded.shot->is_animated()) loaded.shot.reset(), loaded.content = 0; // it holds all textures
+    loaded.doubts = list_doubts(loaded.scene);
+    return loaded;
 }
 
 const Mesh* find_mesh(const Scene& scene, size_t displacement) {
@@ -82,8 +84,16 @@ const Mesh* find_mesh(const Scene& scene, size_t displacement) {
     return nullptr;
 }
 
-Document::Document(SceneInput input, Scene scene) : input_(std::move(input)), scene_(std::move(scene)) {
+Document::Document(SceneInput input, LoadedInput loaded)
+    : input_(std::move(input)),
+      scene_(std::move(loaded.scene)),
+      meshes_(std::move(loaded.meshes)),
+      content_(loaded.content),
+      doubts_(std::move(loaded.doubts)) {
+    if (meshes_.size() != scene_.meshes.size()) meshes_ = share_meshes(scene_.meshes);
+    if (loaded.shot) input_.frame = loaded.frame;
     make_names_distinct(scene_.displacements);
+    note_read_tiles();
 }
 
 void Document::touch() {
@@ -91,15 +101,20 @@ void Document::touch() {
     has_changes_ = true;
 }
 
-std::shared_ptr<const Scene> Document::snapshot() {
+std::shared_ptr<const SharedScene> Document::snapshot() {
     commit();
-    return std::make_shared<const Scene>(scene_);
+    std::vector<Mesh> meshes = std::exchange(scene_.meshes, {}); // to be left out of the copy
+    auto shared = std::make_shared<const SharedScene>(SharedScene{scene_, meshes_});
+    scene_.meshes = std::move(meshes);
+    return shared;
 }
 
 void Document::change_displacement(size_t index, const std::function<void(Displacement&)>& change) {
     Displacement& map = scene_.displacements.at(index);
+    const Displacement before = map;
     change(map);
     map.assumed = {};
+    changed_.note(before, map);
     doubts_.clear();
     changes_.displacements.insert(map.name);
     touch();
@@ -107,26 +122,34 @@ void Document::change_displacement(size_t index, const std::function<void(Displa
 
 void Document::change_material(size_t index, const std::function<void(Material&)>& change) {
     Material& material = scene_.materials.at(index);
+    const Material before = material;
     change(material);
+    changed_.note(before, material);
     changes_.materials.insert(material.name);
     touch();
 }
 
 void Document::change_environment(const std::function<void(Environment&)>& change) {
     if (!scene_.environment) return;
+    const Environment before = *scene_.environment;
     change(*scene_.environment);
+    changed_.note(before, *scene_.environment);
     touch();
 }
 
 void Document::change_light(size_t index, const std::function<void(Light&)>& change) {
-    change(scene_.lights.at(index));
+    const Light before = scene_.lights.at(index);
+    change(scene_.lights[index]);
+    changed_.note(index, before, scene_.lights[index]);
     touch();
 }
 
 void Document::load_environment(const std::filesystem::path& file) {
     auto texture = std::make_shared<const Texture>(read_texture(file));
     if (!scene_.environment) scene_.environment.emplace();
+    const Environment before = *scene_.environment;
     scene_.environment->texture = std::move(texture);
+    changed_.note(before, *scene_.environment);
     changes_.environment = file;
     touch();
 }

@@ -15,7 +15,9 @@
 #include "relief/io.h"
 #include "relief/render.h"
 #include "relief/scene.h"
-#include "relief/shot.h"
+#include "viewer/changed_fields.h"
+#include "viewer/shared_scene.h"
+#include "viewer/shot_reader.h"
 
 namespace relief::viewer {
 
@@ -26,35 +28,46 @@ struct SceneInput {
     std::optional<int> frame; ///< of a scene whose values have keys; nothing: its first one
 };
 
-/// `shot`: of a scene that differs from frame to frame, else null. `doubts`: what speaks against what was
-/// assumed about its maps.
 struct LoadedInput {
     Scene scene;
-    std::shared_ptr<Shot> shot;
-    std::vector<std::string> doubts;
+    SharedMeshes meshes;              ///< of the scene
+    std::shared_ptr<ShotReader> shot; ///< of a scene that differs from frame to frame, else null
+    std::vector<int> frames;          ///< of the shot, as the file names them
+    int frame = 1;                    ///< of the shot, that was read
+    uint64_t content = 0;             ///< ShotFrame::content
+    std::vector<std::string> doubts;  ///< what speaks against what was assumed about its maps
 };
 
-/// Without `shot`, which is that of an earlier call for the same file, all is read anew. Throws as Shot and
-/// load_mesh_scene, and Error{usage} for a file that is neither scene nor mesh.
-LoadedInput load_input(const SceneInput& input, std::shared_ptr<Shot> shot = nullptr);
+/// Throws as Shot and load_mesh_scene, and Error{usage} for a file that is neither scene nor mesh.
+LoadedInput load_input(const SceneInput& input);
 
-/// The frame that a scene is opened at.
-int find_first_frame(const Shot& shot);
+/// What another frame means for strokes, which belong to the map that they were painted on.
+struct FrameStrokes {
+    std::vector<Displacement> left;    ///< maps as they were painted and not saved, which the frame has not
+    std::vector<std::string> returned; ///< names of maps that the frame has again, painted and not saved
+    bool has_other_maps = false;       ///< of strokes before nothing can be taken back
+};
 
 class Document {
   public:
     /// `scene` as load_input read it. Maps whose names are not distinct get distinct ones.
-    Document(SceneInput input, Scene scene);
+    Document(SceneInput input, Scene scene)
+        : Document(std::move(input), LoadedInput{std::move(scene), {}, nullptr, {}, 1, 0, {}}) {}
+    Document(SceneInput input, LoadedInput loaded);
 
     const SceneInput& input() const { return input_; }
     /// LoadedInput::doubts, until a map's convention is changed.
     const std::vector<std::string>& doubts() const { return doubts_; }
-    void set_doubts(std::vector<std::string> doubts) { doubts_ = std::move(doubts); }
-    /// The camera alone differs there.
-    void set_frame(int frame) { input_.frame = frame; }
+    /// ShotFrame::content of what is shown; 0: the file has no frames.
+    uint64_t content() const { return content_; }
+    /// Another frame of the same file. What was changed stays changed; strokes stay where the frame has the
+    /// map that they are on, others come back with it.
+    FrameStrokes show_frame(ShotFrame next);
+    /// Strokes that are not saved are on maps of other frames.
+    bool has_strokes_aside() const;
     const Scene& scene() const { return scene_; }
     /// A copy, with all that was painted so far.
-    std::shared_ptr<const Scene> snapshot();
+    std::shared_ptr<const SharedScene> snapshot();
     /// Grows with each change that a session does not follow.
     uint64_t version() const { return version_; }
     bool has_changes() const { return has_changes_; }
@@ -91,7 +104,18 @@ class Document {
 
   private:
     using TileKey = const Texture*;
+    /// A tile of a map by name and number, and what it was read from: its file, else its frame.
+    using TilePlace = std::pair<std::string, int>;
+    using TileSource = std::pair<TilePlace, std::string>;
+    struct AsideTile {
+        std::shared_ptr<const Texture> texture;
+        bool is_saved = false;
+    };
 
+    void note_read_tiles();
+    std::string name_source(const Texture& texture) const;
+    void put_aside(const Scene& next, FrameStrokes& strokes);
+    void take_back(Scene& next, FrameStrokes& strokes);
     void touch();
     /// Puts what was painted into the scene.
     void commit();
@@ -106,6 +130,11 @@ class Document {
 
     SceneInput input_;
     Scene scene_;
+    SharedMeshes meshes_; ///< of the scene
+    uint64_t content_ = 0;
+    ChangedFields changed_;
+    std::map<TilePlace, std::shared_ptr<const Texture>> read_; ///< as the reader gave them
+    std::map<TileSource, AsideTile> aside_;                    ///< painted maps of other frames
     std::vector<std::string> doubts_;
     uint64_t version_ = 1;
     bool has_changes_ = false, is_saved_ = false;
@@ -118,6 +147,9 @@ class Document {
     std::set<std::filesystem::path> written_; ///< files of maps
     uint64_t paint_count_ = 0;
 };
+
+/// Names tell maps apart in edits and in files.
+void make_names_distinct(std::vector<Displacement>& maps);
 
 /// The file of a tile of a map; `pattern` may hold `<UDIM>`.
 std::filesystem::path name_tile(const std::filesystem::path& pattern, int udim);

@@ -50,15 +50,16 @@ Modifiers read_modifiers(const Value& line) {
 
 int read_key(const std::string& text) {
     if (text.size() == 1) return text[0] >= 'a' && text[0] <= 'z' ? text[0] - 'a' + 'A' : text[0];
-    constexpr std::array<std::pair<std::string_view, int>, 9> kWords{{{"escape", kEscape},
-                                                                      {"enter", kEnter},
-                                                                      {"f1", kF1},
-                                                                      {"f12", kF12},
-                                                                      {"left", kLeft},
-                                                                      {"right", kRight},
-                                                                      {"up", kUp},
-                                                                      {"down", kDown},
-                                                                      {"home", kHome}}};
+    constexpr std::array<std::pair<std::string_view, int>, 10> kWords{{{"escape", kEscape},
+                                                                       {"enter", kEnter},
+                                                                       {"f1", kF1},
+                                                                       {"f12", kF12},
+                                                                       {"left", kLeft},
+                                                                       {"right", kRight},
+                                                                       {"up", kUp},
+                                                                       {"down", kDown},
+                                                                       {"home", kHome},
+                                                                       {"space", ' '}}};
     return cli::parse_word("key", text, kWords);
 }
 
@@ -134,6 +135,14 @@ ScriptStep read_step(const Value& line) {
         if (line["set"].kind() != Value::Kind::record) refuse("set takes a record");
         return SetStep{line["set"]};
     }
+    if (line.contains("frame")) {
+        check_keys(line, std::array<std::string_view, 1>{"frame"});
+        return FrameStep{line["frame"].get<int>()};
+    }
+    if (line.contains("play")) {
+        check_keys(line, std::array<std::string_view, 1>{"play"});
+        return PlayStep{check_seconds(line["play"].get<double>())};
+    }
     if (line.contains("quit")) {
         check_keys(line, std::array<std::string_view, 1>{"quit"});
         return QuitStep{};
@@ -146,9 +155,8 @@ ScriptStep read_step(const Value& line) {
                                                                   {"save_map", File::save_map}}};
     for (const auto& [key, kind] : kFiles)
         if (line.contains(key)) return read_file(line, key, kind);
-    refuse(
-        "a line says one of: wait, drag, press, release, scroll, key, set, open, drop, screenshot, picture, "
-        "save, save_map, quit");
+    refuse("a line says one of: wait, drag, press, release, scroll, key, set, frame, play, open, drop, "
+           "screenshot, picture, save, save_map, quit");
 }
 
 } // namespace

@@ -48,9 +48,20 @@ struct FileStep {
     std::string preset;        ///< of a saved map: empty: its own convention
 };
 
+/// Another frame, until it was read.
+struct FrameStep {
+    int frame = 1;
+};
+
+/// Plays for so long, from the frame that is shown.
+struct PlayStep {
+    double seconds = 1;
+};
+
 struct QuitStep {};
 
-using ScriptStep = std::variant<WaitStep, EventStep, DragStep, SetStep, FileStep, QuitStep>;
+using ScriptStep =
+    std::variant<WaitStep, EventStep, DragStep, SetStep, FileStep, FrameStep, PlayStep, QuitStep>;
 
 /// A line with its number, for messages.
 struct ScriptLine {

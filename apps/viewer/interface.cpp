@@ -56,7 +56,8 @@ void Interface::poll_display() {
 void Interface::place_picture() {
     const float scale = window_.content_scale();
     const float free_width = std::max(1.0f, float(window_.width()) - kPanelWidth * scale);
-    const float free_height = std::max(1.0f, float(window_.height()) - kLineHeight * scale);
+    const int below = kLineHeight + (workbench_.frame() ? kTimelineHeight : 0);
+    const float free_height = std::max(1.0f, float(window_.height()) - float(below) * scale);
     const float ratio = window_.pixel_ratio();
     if (!fixed_size_) {
         area_ = {0, 0, free_width, free_height};
@@ -138,7 +139,6 @@ void Interface::draw_panels() {
         ImGui::PushItemWidth(width * 0.52f);
         draw_file_panel(workbench_, state_);
         draw_view_panel(state_);
-        draw_frame_panel(workbench_);
         draw_object_panel(workbench_);
         draw_displacement_panel(workbench_, state_);
         draw_paint_panel(workbench_);
@@ -150,6 +150,18 @@ void Interface::draw_panels() {
         ImGui::PopItemWidth();
     }
     ImGui::End();
+}
+
+void Interface::draw_timeline_strip() {
+    if (!workbench_.frame()) return;
+    const float scale = window_.content_scale();
+    ImGui::SetNextWindowPos({0, float(window_.height()) - (kLineHeight + kTimelineHeight) * scale});
+    ImGui::SetNextWindowSize({float(window_.width()) - kPanelWidth * scale, kTimelineHeight * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {6 * scale, 5 * scale});
+    if (ImGui::Begin("Timeline", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoNav))
+        draw_timeline(workbench_);
+    ImGui::End();
+    ImGui::PopStyleVar();
 }
 
 void Interface::draw_line() {
@@ -189,6 +201,7 @@ void Interface::draw() {
     window_.begin_frame();
     draw_picture();
     draw_panels();
+    draw_timeline_strip();
     draw_line();
     draw_explanation();
     if (workbench_.is_help_shown()) draw_help(workbench_);

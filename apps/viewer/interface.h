@@ -26,7 +26,7 @@ class Interface {
     ViewSettings& view() { return state_.view; }
 
     /// Pixels beside and below the picture, at a content scale of 1.
-    static constexpr int kPanelWidth = 340, kLineHeight = 26;
+    static constexpr int kPanelWidth = 340, kLineHeight = 26, kTimelineHeight = 32;
 
   private:
     void place_picture();
@@ -35,6 +35,7 @@ class Interface {
     void draw_picture();
     void draw_paths(ImDrawList& list);
     void draw_panels();
+    void draw_timeline_strip();
     void draw_line();
     void draw_explanation();
     void poll_display();

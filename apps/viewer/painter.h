@@ -37,6 +37,8 @@ class Painter {
     std::vector<MapEdit> redo();
     /// Of maps that were replaced nothing can be taken back.
     void forget() { history_.clear(), frames_.clear(); }
+    /// Meshes were replaced.
+    void forget_meshes() { frames_.clear(); }
 
   private:
     /// A rectangle of the tile, the dab there, and its texels before a grab.

@@ -31,7 +31,6 @@ struct PanelState {
 void note_statistics(const RenderState& render, const ShownPicture* picture, PanelState& state);
 
 void draw_file_panel(Workbench& workbench, PanelState& state);
-void draw_frame_panel(Workbench& workbench);
 void draw_object_panel(Workbench& workbench);
 void draw_displacement_panel(Workbench& workbench, PanelState& state);
 void draw_paint_panel(Workbench& workbench);
@@ -41,6 +40,9 @@ void draw_material_panel(Workbench& workbench, PanelState& state);
 void draw_render_panel(Workbench& workbench);
 void draw_view_panel(PanelState& state);
 void draw_statistics_panel(const Workbench& workbench, const PanelState& state);
+
+/// Of a scene with frames: to play, to step, to slide over them. In one line.
+void draw_timeline(Workbench& workbench);
 
 /// Keys and buttons.
 void draw_help(Workbench& workbench);

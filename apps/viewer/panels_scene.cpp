@@ -135,17 +135,6 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     if (ImGui::Button("write picture (F12)")) workbench.write_picture(workbench.suggest_file(".exr"));
 }
 
-void draw_frame_panel(Workbench& workbench) {
-    const std::optional<int> shown = workbench.frame();
-    if (!shown || !ImGui::CollapsingHeader("Frame", ImGuiTreeNodeFlags_DefaultOpen)) return;
-    int frame = *shown;
-    const std::vector<int>& frames = workbench.frames();
-    bool is_changed = ImGui::InputInt("frame", &frame, 1, 10);
-    if (frames.size() > 1)
-        is_changed |= ImGui::SliderInt("##timeline", &frame, frames.front(), frames.back());
-    if (is_changed) workbench.show_frame(std::clamp(frame, -kMaxFrame, kMaxFrame));
-}
-
 void draw_object_panel(Workbench& workbench) {
     if (!workbench.document() || !ImGui::CollapsingHeader("Objects")) return;
     const Scene& scene = workbench.document()->scene();
@@ -217,6 +206,9 @@ void draw_camera_panel(Workbench& workbench) {
     camera.aperture_radius = std::max(camera.aperture_radius, 0.0f);
     camera.focus_distance = std::max(camera.focus_distance, 1e-4f);
     if (is_changed) workbench.change_camera([&](OrbitCamera& orbit) { orbit.set(camera); });
+    ImGui::BeginDisabled(!workbench.has_own_camera());
+    if (ImGui::Button("camera of the scene")) workbench.take_scene_camera();
+    ImGui::EndDisabled();
     int preset = int(workbench.navigation());
     constexpr const char* kPresetNames[] = {"as Blender", "as Maya"};
     if (ImGui::Combo("mouse", &preset, kPresetNames, 2)) workbench.navigation() = NavigationPreset(preset);

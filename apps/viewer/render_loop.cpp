@@ -168,28 +168,57 @@ void RenderLoop::run() {
     }
 }
 
+ImageSettings RenderLoop::make_first_image(const RenderRequest& request) const {
+    ImageSettings image = make_single_sample(request.settings.image);
+    std::tie(image.width, image.height) = governor_.choose_size(image.width, image.height);
+    return image;
+}
+
 void RenderLoop::start_session(const RenderRequest& request) {
     session_.reset(); // so that there are not two
     RenderSettings settings = request.settings;
-    settings.image = make_single_sample(settings.image);
-    std::tie(settings.image.width, settings.image.height) =
-        governor_.choose_size(request.settings.image.width, request.settings.image.height);
-    Scene scene = *request.scene;
+    settings.image = make_first_image(request);
+    Scene scene = make_whole(*request.scene);
     scene.camera = request.camera;
     session_ = std::make_unique<Session>(std::move(scene), settings, request.use);
-    session_scene_ = request.scene_version;
     session_use_ = request.use;
+    session_shot_ = request.shot;
     session_settings_ = settings;
+    has_shown_session_ = false;
+}
+
+/// Surfaces, maps and trees of what is the same stay as they are. False: the session cannot follow.
+bool RenderLoop::change_scene(const RenderRequest& request) {
+    SceneUpdate update;
+    update.scene = make_next(*request.scene, session_meshes_);
+    update.scene->camera = update.camera = request.camera;
+    update.scene_hash = request.scene->scene.hash;
+    const ImageSettings image = make_first_image(request);
+    try {
+        session_->change_scene(std::move(update), image);
+    } catch (const Error&) { // a new one says what is wrong, if anything is
+        return false;
+    }
+    session_settings_.image = image;
+    return true;
+}
+
+void RenderLoop::prepare(const RenderRequest& request) {
+    const bool is_usable = session_ && share_session(session_settings_, request.settings) &&
+                           (request.use == session_use_ || request.use == SessionUse::views);
+    if (is_usable && session_scene_ == request.scene_version) return;
+    const bool is_next = is_usable && request.use == SessionUse::scenes && request.shot != 0 &&
+                         request.shot == session_shot_ && !session_->is_far_away();
+    if (!is_next || !change_scene(request)) start_session(request);
+    session_scene_ = request.scene_version;
+    session_meshes_ = request.scene->meshes;
     session_camera_ = request.camera;
-    has_shown_session_ = is_seen_ = false;
+    is_seen_ = false;
 }
 
 void RenderLoop::render(const Work& work) {
     const RenderRequest& request = work.request;
-    const bool is_fresh = !session_ || session_scene_ != request.scene_version ||
-                          !share_session(session_settings_, request.settings) ||
-                          (request.use == SessionUse::edits && session_use_ != SessionUse::edits);
-    if (is_fresh) start_session(request);
+    prepare(request);
     is_seen_ &= work.edits.empty() && are_same(request.camera, seen_camera_);
     for (const MapEdit& edit : work.edits) session_->edit(edit);
     if (request.motion == Motion::painting) return render_painting(work);

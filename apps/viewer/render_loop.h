@@ -18,6 +18,7 @@
 #include "relief/scene.h"
 #include "relief/session.h"
 #include "viewer/resolution_governor.h"
+#include "viewer/shared_scene.h"
 
 namespace relief::viewer {
 
@@ -27,8 +28,9 @@ enum class Motion { still, moving, painting };
 
 /// What is to be seen.
 struct RenderRequest {
-    std::shared_ptr<const Scene> scene;
-    uint64_t scene_version = 0; ///< another one: another session
+    std::shared_ptr<const SharedScene> scene;
+    uint64_t scene_version = 0; ///< another one: another session, but
+    uint64_t shot = 0;          ///< scenes of one that is not 0 follow each other in one for `scenes`
     RenderSettings settings;
     Camera camera;
     Motion motion = Motion::still;
@@ -85,7 +87,10 @@ class RenderLoop {
     void run();
     std::optional<Work> await_work();
     void render(const Work& work);
+    void prepare(const RenderRequest& request);
     void start_session(const RenderRequest& request);
+    bool change_scene(const RenderRequest& request);
+    ImageSettings make_first_image(const RenderRequest& request) const;
     void render_pass(const Work& work, const ImageSettings& image, Motion motion);
     void render_painting(const Work& work);
     void render_preview(const Work& work);
@@ -108,7 +113,8 @@ class RenderLoop {
 
     // Of the render thread alone.
     std::unique_ptr<Session> session_;
-    uint64_t session_scene_ = 0;
+    uint64_t session_scene_ = 0, session_shot_ = 0;
+    SharedMeshes session_meshes_;
     SessionUse session_use_ = SessionUse::views;
     RenderSettings session_settings_; ///< with those of the last picture
     Camera session_camera_;

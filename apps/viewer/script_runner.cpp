@@ -18,6 +18,7 @@ constexpr double kMostWait = 600;
 /// Seconds that a step says itself.
 double get_seconds(const ScriptStep& step) {
     if (const auto* const drag = std::get_if<DragStep>(&step)) return drag->seconds;
+    if (const auto* const play = std::get_if<PlayStep>(&step)) return play->seconds;
     const auto* const wait = std::get_if<WaitStep>(&step);
     return wait ? wait->seconds : 0;
 }
@@ -162,6 +163,36 @@ bool ScriptRunner::run(const FileStep& step, double now) {
                 workbench_.save_map(0, step.file, step.preset));
         return true;
     }
+    return true;
+}
+
+bool ScriptRunner::run(const FrameStep& step, double now) {
+    if (now == start_) {
+        change_ = now;
+        if (!workbench_.show_frame(step.frame))
+            throw Error(ErrorKind::bad_input, {"nothing in the scene depends on the frame", "frame", ""});
+    }
+    if (workbench_.wanted_frame() != workbench_.frame()) return false;
+    if (workbench_.frame() != step.frame) throw Error(ErrorKind::failed, {workbench_.message(), "", ""});
+    return true;
+}
+
+bool ScriptRunner::run(const PlayStep& step, double now) {
+    if (now == start_) {
+        change_ = now;
+        if (!workbench_.timeline().has_range())
+            throw Error(ErrorKind::bad_input, {"the scene has no frames to play", "play", ""});
+        played_.clear();
+        workbench_.set_playing(true);
+    }
+    played_.insert(*workbench_.frame());
+    if (now - start_ < step.seconds) return false;
+    workbench_.set_playing(false);
+    if (workbench_.wanted_frame() != workbench_.frame()) return false; // what is being read is shown too
+    print_step("play", {{"seconds", now - start_},
+                        {"frames", played_.size()},
+                        {"frame", *workbench_.frame()},
+                        {"pictures", workbench_.render_state().picture_count - pictures_before_}});
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ class ScriptRunner {
     bool run(const DragStep& drag, double now);
     bool run(const SetStep& step, double now);
     bool run(const FileStep& step, double now);
+    bool run(const FrameStep& step, double now);
+    bool run(const PlayStep& step, double now);
     bool run(const QuitStep& step, double now);
     void print_step(const char* step, Value more);
     void send_mouse(const DragStep& drag, InputEvent::Kind kind, float share);
@@ -50,6 +53,7 @@ class ScriptRunner {
     bool has_started_ = false, wants_to_end_ = false, has_printed_first_ = false;
     double start_ = 0, change_ = 0; ///< of this step; of the last event or change
     uint64_t pictures_before_ = 0;
+    std::set<int> played_; ///< frames of this step
 };
 
 } // namespace relief::viewer

@@ -49,6 +49,36 @@ std::filesystem::path find_state_folder() {
 
 UserState::~UserState() = default;
 
+std::filesystem::path UserState::set_aside(const std::filesystem::path& input, const Displacement& map,
+                                           int frame) {
+    if (folder_.empty()) return {};
+    std::erase_if(setting_aside_, [](const std::future<void>& job) {
+        return job.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
+    const std::filesystem::path file = name_aside(input, map, frame);
+    setting_aside_.push_back(std::async(std::launch::async, [file, map, folder = folder_] {
+        std::error_code ignored;
+        std::filesystem::create_directories(folder, ignored);
+        try {
+            write_map(map, file, MapSamples::float32);
+        } catch (const std::exception&) { // the strokes are in memory as well
+        }
+    }));
+    return file;
+}
+
+void UserState::take_back(const std::filesystem::path& input, const Displacement& map, int frame) {
+    const std::filesystem::path pattern = name_aside(input, map, frame);
+    for (const MapTile& tile : map.tiles) kept_.insert(name_tile(pattern, tile.udim));
+}
+
+std::filesystem::path UserState::name_aside(const std::filesystem::path& input, const Displacement& map,
+                                            int frame) const {
+    std::string name = fmt::format("{}-frame{}{}", map.name, frame, map.is_udim ? ".<UDIM>" : "");
+    std::ranges::replace(name, '/', '_');
+    return name_painted(input, name);
+}
+
 std::vector<std::filesystem::path> UserState::read_recent() const {
     std::vector<std::filesystem::path> files;
     std::ifstream stream(folder_ / "recent.txt");
@@ -103,9 +133,9 @@ void UserState::keep_now(Document& document) {
 
 void UserState::write_painted(Document& document) {
     last_count_ = document.paint_count();
-    const std::shared_ptr<const Scene> scene = document.snapshot();
+    const std::shared_ptr<const SharedScene> scene = document.snapshot();
     std::vector<std::pair<const Displacement*, std::filesystem::path>> maps;
-    for (const Displacement& map : scene->displacements)
+    for (const Displacement& map : scene->scene.displacements)
         if (document.has_painted(map.name)) {
             std::string name = map.name;
             std::ranges::replace(name, '/', '_');
@@ -151,6 +181,7 @@ std::vector<std::filesystem::path> UserState::claim_painted(const std::filesyste
 
 void UserState::forget_painted() {
     if (writing_.valid()) writing_.wait();
+    for (const std::future<void>& job : setting_aside_) job.wait();
     std::error_code ignored;
     for (const std::filesystem::path& file : std::exchange(kept_, {})) std::filesystem::remove(file, ignored);
 }

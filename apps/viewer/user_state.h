@@ -34,6 +34,11 @@ class UserState {
     void keep_painted(double now, Document& document);
     /// The same at once, and waits until they are written: the document is about to go.
     void keep_now(Document& document);
+    /// Writes a painted map that another frame has not, in a thread; returns its name, of which `<UDIM>` may
+    /// be a part, or nothing where nothing is kept. It stays when the document is saved, until it comes back.
+    std::filesystem::path set_aside(const std::filesystem::path& input, const Displacement& map, int frame);
+    /// The map is shown again, and what was painted on it is kept and forgotten with the document.
+    void take_back(const std::filesystem::path& input, const Displacement& map, int frame);
     /// The document was saved: what this run kept of it goes. Files of earlier runs stay.
     void forget_painted();
     /// Maps of a scene or mesh that were painted and not saved before it was closed, or a run crashed. Gives
@@ -42,11 +47,14 @@ class UserState {
 
   private:
     std::filesystem::path name_painted(const std::filesystem::path& input, const std::string& map) const;
+    std::filesystem::path name_aside(const std::filesystem::path& input, const Displacement& map,
+                                     int frame) const;
 
     void write_painted(Document& document);
 
     std::filesystem::path folder_;
     std::future<void> writing_;
+    std::vector<std::future<void>> setting_aside_;
     std::set<std::filesystem::path> kept_; ///< files of this run, of the document that is open
     double last_write_ = 0;
     uint64_t last_count_ = 0; ///< Document::paint_count() then

@@ -80,10 +80,11 @@ int find_modifier(int key) {
 /// 0: a key that says nothing.
 int make_key(int key, int scancode) {
     constexpr std::pair<int, int> kKeys[] = {
-        {GLFW_KEY_ESCAPE, kEscape}, {GLFW_KEY_ENTER, kEnter},    {GLFW_KEY_F1, kF1},
-        {GLFW_KEY_F12, kF12},       {GLFW_KEY_LEFT, kLeft},      {GLFW_KEY_RIGHT, kRight},
-        {GLFW_KEY_UP, kUp},         {GLFW_KEY_DOWN, kDown},      {GLFW_KEY_HOME, kHome},
-        {GLFW_KEY_KP_ADD, '+'},     {GLFW_KEY_KP_SUBTRACT, '-'}, {GLFW_KEY_KP_DECIMAL, '.'}};
+        {GLFW_KEY_ESCAPE, kEscape}, {GLFW_KEY_ENTER, kEnter}, {GLFW_KEY_F1, kF1},
+        {GLFW_KEY_F12, kF12},       {GLFW_KEY_LEFT, kLeft},   {GLFW_KEY_RIGHT, kRight},
+        {GLFW_KEY_UP, kUp},         {GLFW_KEY_DOWN, kDown},   {GLFW_KEY_HOME, kHome},
+        {GLFW_KEY_SPACE, ' '},      {GLFW_KEY_KP_ADD, '+'},   {GLFW_KEY_KP_SUBTRACT, '-'},
+        {GLFW_KEY_KP_DECIMAL, '.'}};
     if (find_modifier(key) != 0) return kModifier;
     for (const auto& [from, to] : kKeys)
         if (key == from) return to;
@@ -197,7 +198,7 @@ bool Window::is_for_panels(const InputEvent& event) const {
         return io.WantCaptureMouse && !is_dragging_;
     case Kind::key_down: {
         const bool is_of_panels = event.key == kLeft || event.key == kRight || event.key == kUp ||
-                                  event.key == kDown || event.key == kEnter;
+                                  event.key == kDown || event.key == kEnter || event.key == ' ';
         return io.WantTextInput || (is_of_panels && io.NavVisible);
     }
     case Kind::move:

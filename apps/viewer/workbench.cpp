@@ -131,13 +131,13 @@ void Workbench::explain(float x, float y) {
         return;
     explained_pixel_ = Vec2f{x, y};
     explanation_ = {"...", kNoIndex, {}};
-    std::shared_ptr<const Scene> scene = document_->snapshot();
+    std::shared_ptr<const SharedScene> scene = document_->snapshot();
     RenderSettings settings = settings_;
     settings.image.layers.clear();
     explaining_ = std::async(std::launch::async, [scene, settings, x, y, on_news = on_news_]() {
         cli::PixelExplanation explanation;
         try {
-            explanation = cli::explain_pixel(*scene, settings, int(x), int(y));
+            explanation = cli::explain_pixel(make_whole(*scene), settings, int(x), int(y));
         } catch (const std::exception& error) {
             explanation.text = error.what();
         }
@@ -167,7 +167,10 @@ void Workbench::request(std::vector<MapEdit> edits) {
     request.settings = settings_;
     request.camera = camera_.get();
     request.motion = motion_;
-    if (tool_ == Tool::paint || can_undo() || can_redo()) request.use = SessionUse::edits;
+    request.shot = shot_ ? scene_count_ : 0;
+    request.use = tool_ == Tool::paint || can_undo() || can_redo() ? SessionUse::edits
+                  : shot_                                          ? SessionUse::scenes
+                                                                   : SessionUse::views;
     const uint64_t version = loop_.show(request, std::move(edits));
     if (std::exchange(has_changed_, false)) wanted_version_ = version;
 }
@@ -248,12 +251,16 @@ void Workbench::fly(double seconds) {
     change_camera([&](OrbitCamera& camera) { camera.fly(right * way, up * way, forward * way); });
 }
 
-bool Workbench::is_moving() const { return motion_ != Motion::still || drag_.action != DragAction::none; }
+bool Workbench::is_moving() const {
+    return motion_ != Motion::still || drag_.action != DragAction::none || timeline_.is_playing() ||
+           wanted_frame_;
+}
 
 bool Workbench::update(double now) {
     fly(now - std::exchange(now_, now));
     poll_jobs();
     take_picture();
+    poll_frames();
     take_denoised();
     if (is_done()) preview_.look();
     if (const std::string error = loop_.state().error; error != last_error_) {
@@ -276,7 +283,8 @@ bool Workbench::update(double now) {
 }
 
 bool Workbench::is_shown() const {
-    return document_ && !is_loading() && !needs_request_ && picture_ && picture_->version >= wanted_version_;
+    return document_ && !is_loading() && !needs_request_ && !wanted_frame_ && picture_ &&
+           picture_->version >= wanted_version_;
 }
 
 bool Workbench::is_done() const {

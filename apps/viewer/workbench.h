@@ -23,6 +23,7 @@
 #include "viewer/painter.h"
 #include "viewer/picture_view.h"
 #include "viewer/render_loop.h"
+#include "viewer/timeline.h"
 #include "viewer/user_state.h"
 
 namespace relief::viewer {
@@ -82,13 +83,23 @@ class Workbench {
     /// Index into the scene's objects; nothing: none.
     const std::optional<uint32_t>& selected_object() const { return selected_object_; }
     void select(std::optional<uint32_t> object);
-    /// Frames that the scene file names, in order; empty: none, or nothing in it has keys.
-    const std::vector<int>& frames() const { return frames_; }
-    /// Of a scene whose values have keys.
+    /// Of a scene that differs from frame to frame: the one that is open. Nothing: there are none.
     std::optional<int> frame() const;
-    /// Shows another one; the camera is that of the scene as long as nobody moved it. Refused with a message
-    /// while the scene has changes that are not saved: they would be lost.
+    /// The one that is being read, else frame().
+    std::optional<int> wanted_frame() const { return wanted_frame_ ? wanted_frame_ : frame(); }
+    const Timeline& timeline() const { return timeline_; }
+    /// Shows another one once it was read; one that is wanted later takes its place. What was changed stays
+    /// so; the camera is that of the scene as long as nobody moved it. False without frames.
     bool show_frame(int frame);
+    /// The next one in this direction, +1 or -1; the first or last one.
+    void step_frame(int direction);
+    void show_end_frame(int direction);
+    /// In time, as often as pictures come; frames that come late are left out.
+    void set_playing(bool is_playing);
+    /// Somebody moved the camera: it stays at other frames.
+    bool has_own_camera() const { return has_own_camera_; }
+    /// Looks by the camera of the scene again.
+    void take_scene_camera();
     /// Whether Open Image Denoise is there, as far as is known: it is looked for once a picture is done.
     bool has_denoiser() const { return preview_.is_there(); }
     bool is_denoised() const { return is_denoised_; }
@@ -128,12 +139,17 @@ class Workbench {
     struct Load {
         SceneInput input;
         bool keeps_camera = false;
-        std::shared_ptr<Shot> shot;
     };
     struct Loaded {
         SceneInput input;
         std::optional<LoadedInput> loaded;
         bool keeps_camera = false;
+        std::string error;
+    };
+    struct ReadFrame {
+        std::shared_ptr<ShotReader> shot;
+        int number = 1;
+        std::optional<ShotFrame> frame;
         std::string error;
     };
     struct RereadMap {
@@ -155,10 +171,16 @@ class Workbench {
 
     void frame(const std::optional<uint32_t>& object);
     void forget_explanation();
-    void load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot = nullptr);
+    void load(SceneInput input, bool keeps_camera);
     void start(Load load);
     void adopt(Loaded loaded);
     void adopt(Reread reread);
+    void adopt(ReadFrame read);
+    void poll_frames();
+    void read_frame();
+    void tell_strokes(int left_frame, const FrameStrokes& strokes);
+    /// A picture of what was wanted last, or none of it is to come.
+    bool has_picture() const;
     void watch_files();
     void reload(const std::vector<std::filesystem::path>& files);
     void reread(const std::vector<std::filesystem::path>& maps);
@@ -175,6 +197,7 @@ class Workbench {
     void release(const InputEvent& event);
     void press_key(const InputEvent& event);
     bool press_command(int key);
+    bool press_frame_key(const InputEvent& event);
     void finish_output();
     Vec2f to_picture(float x, float y) const; ///< pixels of the whole picture
     /// Runs `body`; an exception becomes a message. Returns whether there was none.
@@ -197,11 +220,14 @@ class Workbench {
     std::set<int> held_keys_;
     Modifiers modifiers_;
 
-    std::shared_ptr<Shot> shot_; ///< null: the scene is the same at all frames; used by a job while it loads
-    std::vector<int> frames_;
+    std::shared_ptr<ShotReader> shot_; ///< null: the scene is the same at all frames; used by one job alone
+    Timeline timeline_;
+    std::optional<int> wanted_frame_; ///< to be read and shown
+    int reading_number_ = 1;          ///< of the frame that is being read
+    Camera scene_camera_;
     bool has_own_camera_ = false; ///< somebody moved it
 
-    std::shared_ptr<const Scene> snapshot_;
+    std::shared_ptr<const SharedScene> snapshot_;
     uint64_t snapshot_version_ = 0;
     uint64_t scene_count_ = 0; ///< documents opened: versions of different ones differ
     bool needs_snapshot_ = true, needs_request_ = false;
@@ -224,6 +250,7 @@ class Workbench {
     std::future<Loaded> loading_;
     std::optional<Load> next_load_; ///< asked for while another one goes on, whose scene is dropped
     std::future<Reread> rereading_;
+    std::future<ReadFrame> reading_frame_;
     std::future<cli::PixelExplanation> explaining_;
     DenoisedPreview preview_;
     RenderLoop loop_; ///< last: its thread calls on_news_

@@ -33,33 +33,9 @@ bool is_environment(const std::filesystem::path& file) { return cli::get_lower_e
 
 void Workbench::open(const SceneInput& input) { load(input, false); }
 
-std::optional<int> Workbench::frame() const { return document_ ? document_->input().frame : std::nullopt; }
-
-bool Workbench::show_frame(int frame) {
-    if (!shot_ || is_loading()) return false;
-    if (frame == this->frame()) return true;
-    has_news_ = true;
-    if (document_->has_changes()) {
-        message_ = "another frame would drop what was changed: save the scene (S) first, or open it again";
-        return false;
-    }
-    return attempt([&] {
-        if (const std::optional<Shot::View> view = shot_->find_view(frame)) {
-            document_->set_frame(frame);
-            if (has_own_camera_) return;
-            change_camera([&](OrbitCamera& camera) { camera.set(view->camera); });
-            has_own_camera_ = false;
-            return;
-        }
-        SceneInput input = document_->input();
-        input.frame = frame;
-        load(std::move(input), has_own_camera_, shot_);
-    });
-}
-
-void Workbench::load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> shot) {
+void Workbench::load(SceneInput input, bool keeps_camera) {
     if (input.mesh.reader.program.empty()) input.mesh.reader = cli::make_mesh_reader();
-    Load load{std::move(input), keeps_camera, std::move(shot)};
+    Load load{std::move(input), keeps_camera};
     if (loading_.valid()) // to assign to it would wait
         next_load_ = std::move(load);
     else
@@ -67,16 +43,14 @@ void Workbench::load(SceneInput input, bool keeps_camera, std::shared_ptr<Shot> 
 }
 
 void Workbench::start(Load load) {
-    auto& [input, keeps_camera, shot] = load;
+    auto& [input, keeps_camera] = load;
     message_ = fmt::format("loading {}", input.file.filename().string());
     has_news_ = true;
     loading_ = std::async(std::launch::async, [input = std::move(input), keeps_camera = keeps_camera,
-                                               shot = std::move(shot), on_news = on_news_]() mutable {
+                                               on_news = on_news_]() mutable {
         Loaded loaded{std::move(input), std::nullopt, keeps_camera, {}};
         try {
-            loaded.loaded = load_input(loaded.input, std::move(shot));
-            if (const auto& animated = loaded.loaded->shot; animated && !loaded.input.frame)
-                loaded.input.frame = find_first_frame(*animated);
+            loaded.loaded = load_input(loaded.input);
         } catch (const std::exception& error) {
             loaded.error = error.what();
         }
@@ -96,14 +70,15 @@ void Workbench::adopt(Loaded loaded) {
     const bool is_first = !document_;
     painter_.reset();
     if (document_) state_.keep_now(*document_);
-    document_ = std::make_unique<Document>(loaded.input, std::move(loaded.loaded->scene));
-    document_->set_doubts(std::move(loaded.loaded->doubts));
-    shot_ = std::move(loaded.loaded->shot);
-    frames_ = shot_ ? shot_->frames() : std::vector<int>();
-    std::ranges::sort(frames_);
+    shot_ = loaded.loaded->shot;
+    wanted_frame_.reset();
+    timeline_ = {};
+    if (shot_) timeline_ = Timeline(loaded.loaded->frames, loaded.loaded->scene.picture.fps.value_or(0));
+    document_ = std::make_unique<Document>(loaded.input, std::move(*loaded.loaded));
     painter_ = std::make_unique<Painter>(*document_);
     ++scene_count_;
     const Scene& scene = document_->scene();
+    scene_camera_ = scene.camera;
     if (is_first || !loaded.keeps_camera) {
         camera_.set(scene.camera);
         has_own_camera_ = false;
@@ -168,7 +143,7 @@ void Workbench::reload(const std::vector<std::filesystem::path>& files) {
         if (is_map) maps.push_back(file);
     }
     if (maps.size() == files.size()) return reread(maps);
-    if (!document_->has_changes()) return load(document_->input(), true);
+    if (!document_->has_changes() && !document_->has_strokes_aside()) return load(document_->input(), true);
     message_ = fmt::format("{} changed on the disk: save what was changed here, or open it again",
                            files.front().filename().string());
     has_news_ = true;

@@ -74,7 +74,9 @@ void Workbench::press(const InputEvent& event) {
     const Vec2f at = to_picture(event.x, event.y);
     attempt([&] {
         std::vector<MapEdit> edits = painter_->begin(brush_, *picture_, at.x, at.y);
-        if (painter_->is_active()) send(std::move(edits));
+        if (!painter_->is_active()) return;
+        timeline_.pause();
+        send(std::move(edits));
     });
 }
 
@@ -142,7 +144,7 @@ void Workbench::press_key(const InputEvent& event) {
     }
     if (drag_.action == DragAction::look) return; // letters fly
     if (event.is_repeat && std::ranges::find(kRepeating, event.key) == std::end(kRepeating)) return;
-    if (press_command(event.key)) return;
+    if (press_command(event.key) || press_frame_key(event)) return;
     const auto orbit = [&](float right, float up) {
         change_camera([&](OrbitCamera& camera) { camera.orbit(right * kKeyTurn, up * kKeyTurn); });
     };
@@ -168,10 +170,20 @@ void Workbench::press_key(const InputEvent& event) {
     }
 }
 
+bool Workbench::press_frame_key(const InputEvent& event) {
+    if (!frame() || (event.key != kLeft && event.key != kRight)) return false;
+    const int direction = event.key == kLeft ? -1 : 1;
+    event.modifiers.shift ? show_end_frame(direction) : step_frame(direction);
+    return true;
+}
+
 bool Workbench::press_command(int key) {
     switch (key) {
     case 'S':
         save(suggest_file(".json"));
+        return true;
+    case ' ':
+        set_playing(!timeline_.is_playing());
         return true;
     case 'B':
         set_tool(tool_ == Tool::look ? Tool::paint : Tool::look);

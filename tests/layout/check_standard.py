@@ -65,7 +65,7 @@ DECLARED = {
     "string_view": "string_view",
     "system_error": "errc error_code generic_category system_error",
     "thread": "jthread this_thread thread",
-    "tuple": "get tie tuple tuple_element_t",
+    "tuple": "apply get tie tuple tuple_element_t",
     "type_traits": "conditional_t decay_t invoke_result_t is_arithmetic_v is_floating_point_v is_same_v is_trivially_copyable_v remove_reference_t type_identity_t",
     "unordered_map": "unordered_map",
     "unordered_set": "unordered_set",

@@ -1,85 +1,230 @@
-// Scenes whose values have keys: frames are shown, and saved as they were seen.
+// Scenes that differ from frame to frame: frames are shown and played, and what a user did stays.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "common/texel_values.h"
 #include "relief/io.h"
+#include "relief/shot.h"
 #include "viewer/workbench_fixture.h"
 
 namespace relief::viewer {
 
 class FrameTest : public WorkbenchTest {
   protected:
-    /// The bumpy plane with keys in place of one value.
-    void write_animated(const std::string& key, const std::string& value) {
-        std::ifstream stream(folder_ / "scene.json");
-        std::string text(std::istreambuf_iterator<char>(stream), {});
-        const size_t at = text.find(key);
-        ASSERT_NE(at, std::string::npos) << text;
-        const size_t start = text.find_first_not_of(" :", at + key.size());
-        const size_t end = text[start] == '[' ? text.find(']', start) + 1 : text.find_first_of(",\n}", start);
-        text.replace(start, end - start, value);
-        const size_t brace = text.find('{');
-        text.insert(brace + 1, R"("render": {"frames": "1-5"},)");
+    static std::string read_text(const std::filesystem::path& file) {
+        std::ifstream stream(file);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    /// That text of a scene with five frames.
+    void open_text(std::string text) {
+        text.insert(text.find('{') + 1, R"("render": {"frames": "1-5", "fps": 50},)");
         std::ofstream(folder_ / "shot.json") << text;
         bench_->open({folder_ / "shot.json", {}, {}});
         ASSERT_TRUE(reach_done()) << bench_->message();
     }
+    /// The bumpy plane with keys in place of one value.
+    void open_animated(const std::string& key, const std::string& value) {
+        std::string text = read_text(folder_ / "scene.json");
+        const size_t at = text.find(key);
+        ASSERT_NE(at, std::string::npos) << text;
+        const size_t start = text.find_first_not_of(" :", at + key.size());
+        const size_t end = text[start] == '[' ? text.find(']', start) + 1 : text.find_first_of(",\n}", start);
+        open_text(text.replace(start, end - start, value));
+    }
+    /// The same with a map a frame, whose ridges lie in different rows.
+    void open_sequence() {
+        Displacement map = load_scene(folder_ / "scene.json").displacements[0];
+        const Texture texels = *map.tiles[0].texture;
+        for (uint32_t frame = 1; frame <= 5; ++frame) {
+            auto texture = std::make_shared<Texture>(texels);
+            for (uint32_t x = 0; x < 64; ++x) write_texel(*texture, x, 10 * frame, {0, 0, 0.3f});
+            map.tiles[0].texture = texture;
+            write_map(map, name_frame(folder_ / "maps" / "bumps.####.exr", int(frame)), MapSamples::float32);
+        }
+        std::string text = read_text(folder_ / "scene.json");
+        const std::string name = "bumps.exr";
+        open_text(text.replace(text.find(name), name.size(), "bumps.####.exr"));
+    }
+    void show(int frame) {
+        ASSERT_TRUE(bench_->show_frame(frame));
+        ASSERT_TRUE(reach_done()) << bench_->message();
+        ASSERT_EQ(bench_->frame(), frame) << bench_->message();
+    }
+    /// What a render of the file at a frame gives.
+    std::vector<float> render_frame(int frame) {
+        return render(Shot(folder_ / "shot.json").load(frame), settings_).image.pixels;
+    }
+    const Displacement& map() const { return bench_->document()->scene().displacements[0]; }
+    void paint(float height) { write_texel(bench_->document()->paint_tile(0, 1001), 12, 20, {0, 0, height}); }
+    std::shared_ptr<const Texture> painted_texture() {
+        return bench_->document()->snapshot()->scene.displacements[0].tiles[0].texture;
+    }
+    float read_height() { return read_texel(*painted_texture(), 12, 20).z; }
 };
 
 TEST_F(FrameTest, a_frame_is_shown_and_saved_without_its_keys) {
-    write_animated("\"scale\"", R"({"keys": [[1, 0], [5, 2]]})");
+    open_animated("\"scale\"", R"({"keys": [[1, 0], [5, 2]]})");
     EXPECT_EQ(bench_->frame(), 1);
-    EXPECT_EQ(bench_->frames(), (std::vector<int>{1, 2, 3, 4, 5}));
+    EXPECT_EQ(bench_->timeline().frames(), (std::vector<int>{1, 2, 3, 4, 5}));
+    EXPECT_EQ(bench_->timeline().fps(), 50);
     const std::vector<float> first = bench_->picture()->image.pixels;
-    ASSERT_TRUE(bench_->show_frame(4));
-    ASSERT_TRUE(reach([&] { return !bench_->is_loading(); }));
-    ASSERT_TRUE(reach_done());
-    EXPECT_EQ(bench_->frame(), 4);
-    EXPECT_EQ(bench_->document()->scene().displacements[0].scale.x, 1.5f);
+    show(4);
+    EXPECT_EQ(map().scale.x, 1.5f);
     EXPECT_NE(bench_->picture()->image.pixels, first);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(4));
     ASSERT_TRUE(bench_->save(folder_ / "seen.json")) << bench_->message();
     EXPECT_EQ(render_file("seen.json"), bench_->picture()->image.pixels);
 }
 
-TEST_F(FrameTest, changes_that_are_not_saved_are_not_dropped_for_another_frame) {
-    write_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+TEST_F(FrameTest, what_was_changed_stays_and_all_else_follows_its_keys) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
     bench_->change_document([](Document& document) {
         document.change_displacement(0, [](Displacement& map) { map.midlevel = {0, 0, 0.1f}; });
+        document.change_material(0, [](Material& material) { material.roughness = 0.125f; });
     });
-    EXPECT_FALSE(bench_->show_frame(3));
-    EXPECT_NE(bench_->message().find("save"), std::string::npos);
-    EXPECT_EQ(bench_->frame(), 1);
-    ASSERT_TRUE(bench_->save(folder_ / "changed.json"));
-    EXPECT_TRUE(bench_->show_frame(3));
-    ASSERT_TRUE(reach_done());
-    EXPECT_EQ(bench_->document()->scene().displacements[0].scale.x, 1.5f);
+    bench_->change_settings([](RenderSettings& settings) { settings.image.spp = 2; });
+    show(3);
+    EXPECT_EQ(map().scale.x, 1.5f);
+    EXPECT_EQ(map().midlevel.z, 0.1f);
+    EXPECT_EQ(bench_->document()->scene().materials[0].roughness, 0.125f);
+    EXPECT_EQ(bench_->settings().image.spp, 2);
+    EXPECT_TRUE(bench_->document()->has_changes());
+    show(1);
+    EXPECT_EQ(map().scale.x, 1);
+    EXPECT_EQ(map().midlevel.z, 0.1f);
+    ASSERT_TRUE(bench_->save(folder_ / "changed.json")) << bench_->message();
+    settings_.image.spp = 2;
+    EXPECT_EQ(render_file("changed.json"), bench_->picture()->image.pixels);
 }
 
 TEST_F(FrameTest, a_camera_with_keys_moves_until_somebody_else_moves_it) {
-    write_animated("\"from\"", R"({"keys": [[1, [0, 0, 4]], [5, [4, 0, 4]]]})");
-    ASSERT_TRUE(bench_->show_frame(3));
-    EXPECT_FALSE(bench_->is_loading());
+    open_animated("\"from\"", R"({"keys": [[1, [0, 0, 4]], [5, [4, 0, 4]]]})");
+    const uint64_t content = bench_->document()->content();
+    show(3);
+    EXPECT_EQ(bench_->document()->content(), content);
     EXPECT_EQ(bench_->camera().get().from.x, 2);
-    ASSERT_TRUE(reach_done());
-    ASSERT_TRUE(bench_->show_frame(5));
+    show(5);
     EXPECT_EQ(bench_->camera().get().from.x, 4);
-    press_key(kLeft);
+    press_key(kUp);
     const Vec3f from = bench_->camera().get().from;
-    ASSERT_TRUE(bench_->show_frame(1));
+    EXPECT_TRUE(bench_->has_own_camera());
+    show(1);
     EXPECT_EQ(bench_->camera().get().from, from);
+    bench_->take_scene_camera();
+    EXPECT_EQ(bench_->camera().get().from.x, 0);
+    show(3);
+    EXPECT_EQ(bench_->camera().get().from.x, 2);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
+}
+
+TEST_F(FrameTest, the_keys_of_other_programs_step_and_play) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    const auto reach_frame = [&](int frame) { return reach([&] { return bench_->frame() == frame; }); };
+    press_key(kRight);
+    EXPECT_TRUE(reach_frame(2));
+    press_key(kRight, {.shift = true});
+    EXPECT_TRUE(reach_frame(5));
+    press_key(kLeft);
+    EXPECT_TRUE(reach_frame(4));
+    press_key(kLeft, {.shift = true});
+    EXPECT_TRUE(reach_frame(1));
+    EXPECT_FALSE(bench_->has_own_camera());
+    press_key(' ');
+    EXPECT_TRUE(bench_->timeline().is_playing());
+    std::set<int> seen;
+    EXPECT_TRUE(reach([&] { return seen.insert(*bench_->frame()), seen.size() >= 3; }));
+    press_key(' ');
+    EXPECT_FALSE(bench_->timeline().is_playing());
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(*bench_->frame()));
+}
+
+TEST_F(FrameTest, of_frames_that_are_wanted_faster_than_they_come_the_last_one_is_shown) {
+    open_sequence();
+    for (int k = 0; k < 40; ++k) {
+        ASSERT_TRUE(bench_->show_frame(1 + k % 5));
+        bench_->update(1e-3 * k);
+    }
+    EXPECT_EQ(bench_->wanted_frame(), 5);
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->frame(), 5);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(5));
+    for (const int frame : {3, 1, 4}) {
+        show(frame);
+        EXPECT_EQ(bench_->picture()->image.pixels, render_frame(frame)) << frame;
+    }
+}
+
+TEST_F(FrameTest, strokes_on_a_map_of_all_frames_stay_and_can_be_taken_back) {
+    open_animated("\"roughness\"", R"({"keys": [[1, 0.2], [5, 0.9]]})");
+    bench_->set_tool(Tool::paint);
+    ASSERT_TRUE(reach_done());
+    const float before = read_height();
+    drag(20, 16, 26, 16);
+    ASSERT_TRUE(bench_->can_undo());
+    ASSERT_TRUE(reach_done());
+    const std::shared_ptr<const Texture> painted = painted_texture();
+    show(4);
+    EXPECT_TRUE(bench_->document()->has_painted());
+    EXPECT_EQ(map().tiles[0].texture, painted);
+    ASSERT_TRUE(bench_->can_undo());
+    bench_->undo();
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(read_height(), before);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(4));
+}
+
+TEST_F(FrameTest, strokes_on_a_map_of_one_frame_come_back_with_it) {
+    bench_ = std::make_unique<Workbench>(settings_, given_, nullptr, folder_ / "state");
+    bench_->set_area({0, 0, 48, 32});
+    open_sequence();
+    show(2);
+    paint(0.75f);
+    show(3);
+    EXPECT_NE(bench_->message().find("comes back with frame 2"), std::string::npos) << bench_->message();
+    EXPECT_FALSE(bench_->document()->has_painted());
+    EXPECT_TRUE(bench_->document()->has_strokes_aside());
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
+    ASSERT_TRUE(bench_->save(folder_ / "third.json"));
+    EXPECT_EQ(render_file("third.json"), bench_->picture()->image.pixels);
+    show(2);
+    EXPECT_TRUE(bench_->document()->has_painted());
+    EXPECT_FALSE(bench_->document()->has_strokes_aside());
+    EXPECT_EQ(read_height(), 0.75f);
+    show(4);
+    bench_.reset();
+    const auto kept = UserState(folder_ / "state").claim_painted(folder_ / "shot.json");
+    ASSERT_EQ(kept.size(), 1u);
+    EXPECT_EQ(read_texel(read_texture(kept[0]), 12, 20).z, 0.75f);
+}
+
+TEST_F(FrameTest, a_frame_whose_file_is_missing_leaves_what_is_shown) {
+    open_sequence();
+    std::filesystem::remove(folder_ / "maps" / "bumps.0003.exr");
+    ASSERT_TRUE(bench_->show_frame(3));
+    ASSERT_TRUE(reach([&] { return bench_->wanted_frame() == bench_->frame(); }));
     EXPECT_EQ(bench_->frame(), 1);
+    EXPECT_NE(bench_->message().find("frame 3"), std::string::npos) << bench_->message();
+    show(4);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(4));
 }
 
 TEST_F(FrameTest, a_scene_without_keys_has_no_frames) {
     open_scene();
     EXPECT_FALSE(bench_->frame());
-    EXPECT_TRUE(bench_->frames().empty());
+    EXPECT_TRUE(bench_->timeline().frames().empty());
     EXPECT_FALSE(bench_->show_frame(2));
+    press_key(' ');
+    EXPECT_FALSE(bench_->timeline().is_playing());
+    press_key(kLeft);
+    EXPECT_TRUE(bench_->has_own_camera());
 }
 
 } // namespace relief::viewer

@@ -25,9 +25,9 @@ struct Easel {
           picture(make_picture(document.scene(), make_small_settings())) {}
 
     Vec3f texel(uint32_t x, uint32_t y) {
-        return read_texel(*document.snapshot()->displacements[0].tiles[0].texture, x, y);
+        return read_texel(*document.snapshot()->scene.displacements[0].tiles[0].texture, x, y);
     }
-    Texture texels() { return *document.snapshot()->displacements[0].tiles[0].texture; }
+    Texture texels() { return *document.snapshot()->scene.displacements[0].tiles[0].texture; }
 
     Document document;
     Painter painter;
@@ -101,14 +101,15 @@ TEST(Painter, edits_bring_a_session_to_the_document) {
     for (const bool has_halves : {false, true}) {
         Easel easel(make_bumpy_scene(DisplacementSpace::tangent, has_halves));
         const RenderSettings settings = make_small_settings();
-        Session session(*easel.document.snapshot(), settings);
+        Session session(make_whole(*easel.document.snapshot()), settings);
         session.render();
         for (const MapEdit& edit :
              easel.painter.begin(make_brush(BrushKind::push, 0.7f), easel.picture, 20, 12))
             session.edit(edit);
         for (const MapEdit& edit : easel.painter.move(easel.picture, 34, 20)) session.edit(edit);
         easel.painter.end();
-        EXPECT_EQ(session.render().image.pixels, render(*easel.document.snapshot(), settings).image.pixels);
+        EXPECT_EQ(session.render().image.pixels,
+                  render(make_whole(*easel.document.snapshot()), settings).image.pixels);
     }
 }
 

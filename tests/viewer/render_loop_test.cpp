@@ -17,7 +17,7 @@ namespace {
 
 RenderRequest make_request(const Scene& scene, Motion motion = Motion::still) {
     RenderRequest request;
-    request.scene = std::make_shared<const Scene>(scene);
+    request.scene = share_scene(scene);
     request.scene_version = 1;
     request.settings = make_small_settings();
     request.camera = scene.camera;

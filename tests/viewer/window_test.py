@@ -1,7 +1,8 @@
 """The viewer in a real window, on a display without a screen: window_test.py RELIEF [FOLDER keeps what was made].
 
 Opens the pumpkin, turns it, changes its scale, paints a stroke, takes it back, makes it again and saves; what is saved
-renders to the viewer's picture, bit for bit. Then mistakes: no display, a script with a wrong line.
+renders to the viewer's picture, bit for bit. Frames of a shot are shown, slid over and played: they are those that
+`relief render` makes. Then mistakes: no display, a script with a wrong line.
 """
 import json
 import os
@@ -41,6 +42,40 @@ SCRIPT = [
     {"screenshot": "help.png"},
     {"picture": "seen.exr"},
     {"save": "saved.json"},
+    {"quit": True},
+]
+FRAMES = [
+    {"wait": "done"},
+    {"screenshot": "timeline.png"},
+    {"frame": 7},
+    {"wait": "done"},
+    {"picture": "seen.0007.exr"},
+    {"frame": 20},
+    {"frame": 12},
+    {"wait": "done"},
+    {"picture": "seen.0012.exr"},
+    {"key": "right"},
+    {"wait": "done"},
+    {"picture": "seen.0013.exr"},
+    {"release": "left", "at": [225, 163]},  # the slider, once panels have seen the mouse there
+    {"wait": 0.2},
+    {"drag": "left", "from": [225, 163], "to": [310, 163], "seconds": 1},
+    {"wait": "done"},
+    {"picture": "slid.exr"},
+    {"release": "left", "at": [140, 90]},
+    {"wait": 0.2},
+    {"play": 1},
+    {"key": "space"},
+    {"wait": 0.3},
+    {"screenshot": "playing.png"},
+    {"key": "space"},
+    {"wait": "done"},
+    {"drag": "middle", "from": [140, 90], "to": [160, 95], "seconds": 0.3},
+    {"key": "left", "modifiers": ["shift"]},
+    {"wait": "done"},
+    {"screenshot": "turned.png"},
+    {"picture": "turned.exr"},
+    {"save": "turned.json"},
     {"quit": True},
 ]
 
@@ -96,6 +131,34 @@ def check_session(viewer):
     assert viewer.compare("seen.exr", "rendered.exr") == 0
 
 
+def check_frames(viewer):
+    """Frames of a shot are those of `relief render`; a camera that was moved stays."""
+    made = viewer.run("scene", "shot", "-o", "shot")
+    assert made.returncode == 0, made.stderr
+    file = viewer.folder / "shot/scene.json"
+    scene = json.loads(file.read_text())
+    scene["camera"]["shutter"] = [0, 0]  # the viewer shows an instant
+    file.write_text(json.dumps(scene))
+    result = viewer.run_script(FRAMES, "shot/scene.json")
+    print(result.stdout, result.stderr)
+    assert result.returncode == 0, result.stderr
+    lines = [json.loads(line) for line in result.stdout.splitlines()]
+    played = next(line for line in lines if line.get("step") == "play")
+    assert played["frames"] >= 2, played
+    turned = [line for line in lines if line.get("step") == "drag"][-1]
+    assert turned["pictures"] >= 1, turned
+    options = ["-q", "--size", SIZE, "--spp", 4, "--layers", "depth,N,P,uv,id,cost"]
+    rendered = viewer.run("render", "shot/scene.json", "--frames", "7,12,13,24", "-o", "rendered.####.exr", *options)
+    assert rendered.returncode == 0, rendered.stderr
+    for frame in (7, 12, 13):
+        assert viewer.compare(f"seen.{frame:04}.exr", f"rendered.{frame:04}.exr") == 0, frame
+    assert viewer.compare("slid.exr", "rendered.0024.exr") == 0
+    assert viewer.compare("rendered.0007.exr", "rendered.0012.exr") > 300
+    saved = viewer.run("render", "turned.json", "-o", "saved.exr", *options)
+    assert saved.returncode == 0, saved.stderr
+    assert viewer.compare("turned.exr", "saved.exr") == 0
+
+
 def check_mistakes(viewer):
     blind = {name: value for name, value in viewer.environment.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     result = viewer.run("view", "pumpkin/scene.json", environment=blind)
@@ -126,6 +189,7 @@ def main():
             viewer = Viewer(os.path.abspath(sys.argv[1]), folder, display)
             start = time.monotonic()
             check_session(viewer)
+            check_frames(viewer)
             check_mistakes(viewer)
             print(f"{time.monotonic() - start:.1f} s")
     finally:

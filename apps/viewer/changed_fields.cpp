@@ -1,0 +1,83 @@
+#include "viewer/changed_fields.h"
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+namespace relief::viewer {
+
+namespace {
+
+// All that panels and scripts change.
+constexpr auto kDisplacementFields =
+    std::tuple(&Displacement::type, &Displacement::space, &Displacement::axes, &Displacement::midlevel,
+               &Displacement::has_midlevel, &Displacement::scale, &Displacement::flip_v, &Displacement::wrap,
+               &Displacement::filter, &Displacement::assumed);
+constexpr auto kMaterialFields = std::tuple(&Material::base_color, &Material::roughness, &Material::metallic);
+constexpr auto kEnvironmentFields = std::tuple(&Environment::texture, &Environment::color,
+                                               &Environment::strength, &Environment::rotate_degrees);
+constexpr auto kLightFields =
+    std::tuple(&Light::direction, &Light::position, &Light::color, &Light::strength);
+
+template <class Item, class Members>
+uint32_t find_changes(const Item& before, const Item& after, const Members& members) {
+    uint32_t fields = 0, bit = 1;
+    const auto look = [&](auto member) {
+        if (!(before.*member == after.*member)) fields |= bit;
+        bit <<= 1;
+    };
+    std::apply([&](auto... member) { (look(member), ...); }, members);
+    return fields;
+}
+
+template <class Item, class Members>
+void copy_fields(const Item& from, Item& to, uint32_t fields, const Members& members) {
+    const auto copy = [&](auto member) {
+        if (fields & 1) to.*member = from.*member;
+        fields >>= 1;
+    };
+    std::apply([&](auto... member) { (copy(member), ...); }, members);
+}
+
+template <class Item, class Members>
+void copy_named(const std::vector<Item>& from, std::vector<Item>& to,
+                const std::map<std::string, uint32_t>& fields, const Members& members) {
+    for (Item& item : to) {
+        const auto changed = fields.find(item.name);
+        if (changed == fields.end()) continue;
+        const auto source = std::ranges::find(from, item.name, &Item::name);
+        if (source != from.end()) copy_fields(*source, item, changed->second, members);
+    }
+}
+
+} // namespace
+
+void ChangedFields::note(const Displacement& before, const Displacement& after) {
+    displacements_[after.name] |= find_changes(before, after, kDisplacementFields);
+}
+
+void ChangedFields::note(const Material& before, const Material& after) {
+    materials_[after.name] |= find_changes(before, after, kMaterialFields);
+}
+
+void ChangedFields::note(const Environment& before, const Environment& after) {
+    environment_ |= find_changes(before, after, kEnvironmentFields);
+}
+
+void ChangedFields::note(size_t light, const Light& before, const Light& after) {
+    lights_[light] |= find_changes(before, after, kLightFields);
+}
+
+void ChangedFields::carry(const Scene& from, Scene& to) const {
+    copy_named(from.displacements, to.displacements, displacements_, kDisplacementFields);
+    copy_named(from.materials, to.materials, materials_, kMaterialFields);
+    if (from.lights.size() == to.lights.size())
+        for (const auto& [light, fields] : lights_)
+            if (light < to.lights.size())
+                copy_fields(from.lights[light], to.lights[light], fields, kLightFields);
+    if (!environment_ || !from.environment) return;
+    if (!to.environment) to.environment.emplace();
+    copy_fields(*from.environment, *to.environment, environment_, kEnvironmentFields);
+}
+
+} // namespace relief::viewer

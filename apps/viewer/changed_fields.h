@@ -1,0 +1,33 @@
+// What a user changed of a scene, field by field, so that it stays changed at other frames, while all else
+// follows its keys.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "relief/scene.h"
+
+namespace relief::viewer {
+
+class ChangedFields {
+  public:
+    void note(const Displacement& before, const Displacement& after);
+    void note(const Material& before, const Material& after);
+    void note(const Environment& before, const Environment& after);
+    void note(size_t light, const Light& before, const Light& after);
+
+    /// Gives `to`, the same scene at another frame, the fields of `from` that were changed: of displacements
+    /// and materials by their names, of lights by their numbers where there are as many.
+    void carry(const Scene& from, Scene& to) const;
+
+  private:
+    using Fields = uint32_t; ///< a bit each
+
+    std::map<std::string, Fields> displacements_, materials_;
+    std::map<size_t, Fields> lights_;
+    Fields environment_ = 0;
+};
+
+} // namespace relief::viewer

@@ -1,0 +1,96 @@
+// Document: another frame of the same file, and what becomes of strokes there.
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "viewer/document.h"
+
+namespace relief::viewer {
+
+void Document::note_read_tiles() {
+    read_.clear();
+    for (const Displacement& map : scene_.displacements)
+        for (const MapTile& tile : map.tiles) read_[{map.name, tile.udim}] = tile.texture;
+}
+
+std::string Document::name_source(const Texture& texture) const {
+    return texture.file.empty() ? fmt::format("frame {}", input_.frame.value_or(1)) : texture.file;
+}
+
+/// Of maps that stay the tiles as they are now; others are kept for when their frame is shown again.
+void Document::put_aside(const Scene& next, FrameStrokes& strokes) {
+    const auto is_read_again = [&](const TilePlace& place) {
+        const auto map = std::ranges::find(next.displacements, place.first, &Displacement::name);
+        if (map == next.displacements.end()) return false;
+        const auto tile = std::ranges::find(map->tiles, place.second, &MapTile::udim);
+        return tile != map->tiles.end() && tile->texture == read_.at(place);
+    };
+    for (const Displacement& map : scene_.displacements) {
+        if (!painted_maps_.contains(map.name)) continue;
+        const bool is_saved = !unsaved_.contains(map.name);
+        bool is_left = false;
+        for (const MapTile& tile : map.tiles) {
+            const TilePlace place{map.name, tile.udim};
+            if (is_read_again(place)) continue;
+            is_left = true;
+            if (tile.texture != read_.at(place))
+                aside_[{place, name_source(*read_.at(place))}] = {tile.texture, is_saved};
+            painted_.erase(tile.texture.get());
+        }
+        if (!is_left) continue;
+        strokes.has_other_maps = true;
+        if (!is_saved) strokes.left.push_back(map);
+        painted_maps_.erase(map.name), unsaved_.erase(map.name), changes_.maps.erase(map.name);
+    }
+}
+
+void Document::take_back(Scene& next, FrameStrokes& strokes) {
+    std::set<std::string> returned;
+    const auto before = std::exchange(read_, {});
+    for (Displacement& map : next.displacements)
+        for (MapTile& tile : map.tiles) {
+            const TilePlace place{map.name, tile.udim};
+            read_[place] = tile.texture;
+            const auto read = before.find(place);
+            if (read != before.end() && read->second == tile.texture) { // the same map, with its strokes
+                const auto mine = std::ranges::find(scene_.displacements, map.name, &Displacement::name);
+                tile.texture = std::ranges::find(mine->tiles, tile.udim, &MapTile::udim)->texture;
+                continue;
+            }
+            const auto node = aside_.extract({place, name_source(*tile.texture)});
+            if (!node) continue;
+            tile.texture = node.mapped().texture;
+            painted_maps_.insert(map.name);
+            if (!node.mapped().is_saved) unsaved_.insert(map.name), returned.insert(map.name);
+        }
+    strokes.returned.assign(returned.begin(), returned.end());
+}
+
+FrameStrokes Document::show_frame(ShotFrame next) {
+    FrameStrokes strokes;
+    if (!next.scene) {
+        input_.frame = next.frame;
+        return strokes;
+    }
+    commit();
+    make_names_distinct(next.scene->displacements);
+    changed_.carry(scene_, *next.scene);
+    put_aside(*next.scene, strokes);
+    input_.frame = next.frame; // of the files that are named by it
+    take_back(*next.scene, strokes);
+    scene_ = std::move(*next.scene);
+    meshes_ = std::move(next.meshes);
+    content_ = next.content;
+    ++version_;
+    return strokes;
+}
+
+bool Document::has_strokes_aside() const {
+    return std::ranges::any_of(aside_, [](const auto& tile) { return !tile.second.is_saved; });
+}
+
+} // namespace relief::viewer

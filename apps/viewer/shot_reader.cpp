@@ -1,0 +1,40 @@
+#include "viewer/shot_reader.h"
+
+#include <memory>
+#include <utility>
+
+namespace relief::viewer {
+
+namespace {
+
+/// Takes meshes that were left out from those before.
+SharedMeshes take_meshes(std::vector<Mesh> meshes, const SharedMeshes& before) {
+    SharedMeshes shared;
+    for (size_t k = 0; k < meshes.size(); ++k) {
+        const bool is_left_out = meshes[k].positions.empty() && meshes[k].face_sizes.empty();
+        shared.push_back(is_left_out && k < before.size()
+                             ? before[k]
+                             : std::make_shared<const Mesh>(std::move(meshes[k])));
+    }
+    return shared;
+}
+
+} // namespace
+
+ShotFrame ShotReader::read(int frame, uint64_t known) {
+    SceneUpdate update = shot_.update(frame);
+    if (update.scene) {
+        last_.meshes = take_meshes(std::exchange(update.scene->meshes, {}), last_.meshes);
+        last_.scene = std::move(*update.scene);
+        ++content_;
+    }
+    last_.scene.camera = update.camera;
+    last_.scene.hash = update.scene_hash;
+    ShotFrame result{frame, content_, update.camera, std::nullopt, {}};
+    if (content_ == known) return result;
+    result.scene = make_whole(last_);
+    result.meshes = last_.meshes;
+    return result;
+}
+
+} // namespace relief::viewer

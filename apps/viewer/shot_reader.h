@@ -1,0 +1,42 @@
+// Reads frames of a scene file; of a frame only what differs from the one before.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "relief/io.h"
+#include "relief/shot.h"
+#include "viewer/shared_scene.h"
+
+namespace relief::viewer {
+
+struct ShotFrame {
+    int frame = 1;
+    uint64_t content = 0; ///< the same one where frames differ by the camera alone; never 0
+    Camera camera;
+    std::optional<Scene> scene; ///< nothing: its content is known already
+    SharedMeshes meshes;        ///< of the scene; those that have stayed are those of earlier frames
+};
+
+/// Not thread safe.
+class ShotReader {
+  public:
+    /// Throws as Shot.
+    explicit ShotReader(const std::filesystem::path& file, const MeshReaderSettings& reader = {})
+        : shot_(file, reader) {}
+
+    const std::vector<int>& frames() const { return shot_.frames(); }
+    bool is_animated() const { return shot_.is_animated(); }
+
+    /// `known`: content that the caller has. Throws as Shot::update.
+    ShotFrame read(int frame, uint64_t known = 0);
+
+  private:
+    Shot shot_;
+    SharedScene last_;
+    uint64_t content_ = 0;
+};
+
+} // namespace relief::viewer
