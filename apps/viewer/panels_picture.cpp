@@ -39,7 +39,7 @@ void draw_history(const char* label, const std::array<float, PanelState::kHistor
 void note_statistics(const RenderState& render, const ShownPicture* picture, PanelState& state) {
     if (render.picture_count == state.last_picture || !picture) return;
     state.last_picture = render.picture_count;
-    const Statistics& s = render.statistics;
+    const Statistics& s = *render.statistics;
     const double rays = double(s.camera_rays + s.shadow_rays + s.bounce_rays);
     const size_t at = state.history_count++ % PanelState::kHistory;
     // Times of stages are those of all threads together.
@@ -123,7 +123,7 @@ void draw_view_panel(PanelState& state) {
 void draw_statistics_panel(const Workbench& workbench, const PanelState& state) {
     if (!ImGui::CollapsingHeader("Statistics")) return;
     const RenderState render = workbench.render_state();
-    const Statistics& s = render.statistics;
+    const Statistics& s = *render.statistics;
     draw_history("rays", state.rays, state.history_count, "{:.2f} million a second");
     draw_history("picture", state.times, state.history_count, "{:.0f} ms");
     ImGui::Text("%s, %s", s.engine.c_str(), (s.engine == "cpu" ? s.isa : s.device).c_str());

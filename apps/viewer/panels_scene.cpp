@@ -86,7 +86,7 @@ bool edit_convention(Displacement& map) {
 void draw_doubts(const Workbench& workbench) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.75f, 0.3f, 1.0f));
     for (const std::string& doubt : workbench.document()->doubts()) ImGui::TextWrapped("%s", doubt.c_str());
-    for (const std::string& warning : workbench.render_state().statistics.warnings)
+    for (const std::string& warning : workbench.render_state().statistics->warnings)
         ImGui::TextWrapped("%s", warning.c_str());
     ImGui::PopStyleColor();
 }

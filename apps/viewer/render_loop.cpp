@@ -260,9 +260,10 @@ void RenderLoop::render_pass(const Work& work, const ImageSettings& image, Motio
         session_settings_.image = image;
     }
     RenderResult result = session_->render(&observer);
+    auto statistics = std::make_shared<const Statistics>(std::move(result.statistics));
     {
         const std::lock_guard lock(mutex_);
-        state_.statistics = std::move(result.statistics);
+        state_.statistics = std::move(statistics);
     }
     if (!result.is_complete) return;
     publish(std::move(result.image), observer, motion == Motion::still);

@@ -50,9 +50,10 @@ struct ShownPicture {
 
 struct RenderState {
     bool is_busy = false;
-    std::string error;     ///< of the last render; empty: none
-    Progress progress;     ///< of the last picture
-    Statistics statistics; ///< of the last render that ended
+    std::string error; ///< of the last render; empty: none
+    Progress progress; ///< of the last picture
+    /// Of the last render that ended; never null.
+    std::shared_ptr<const Statistics> statistics = std::make_shared<const Statistics>();
     uint64_t picture_count = 0;
     double picture_scale = 1; ///< of width and height while moving
 };

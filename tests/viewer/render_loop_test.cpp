@@ -59,7 +59,7 @@ TEST(RenderLoop, the_last_picture_is_that_of_a_render_bit_for_bit) {
     EXPECT_GE(news, 2); // one of a small picture, one of the whole
     ASSERT_TRUE(wait_until([&] { return !loop.state().is_busy; }));
     EXPECT_EQ(loop.state().error, "");
-    EXPECT_GT(loop.state().statistics.camera_rays, 0u);
+    EXPECT_GT(loop.state().statistics->camera_rays, 0u);
 }
 
 TEST(RenderLoop, colours_do_not_depend_on_the_layers_of_the_viewer) {
