@@ -19,6 +19,8 @@ namespace {
 constexpr double kRest = 0.12, kHeldRest = 0.3, kPaintRest = 0.5;
 /// Seconds between two looks at files.
 constexpr double kWatchInterval = 0.2;
+/// Messages that are kept.
+constexpr size_t kMostMessages = 20;
 /// Way that flying takes a second, in distances of the target.
 constexpr float kFlySpeed = 0.8f;
 
@@ -101,6 +103,16 @@ void Workbench::change_document(const std::function<void(Document&)>& change) {
     if (!document_) return;
     attempt([&] { change(*document_); });
     set_motion(Motion::moving);
+}
+
+void Workbench::note_message() {
+    if (message_.empty() || (!messages_.empty() && messages_.front() == message_)) return;
+    messages_.push_front(message_);
+    if (messages_.size() > kMostMessages) messages_.pop_back();
+}
+
+bool Workbench::has_unsaved() const {
+    return document_ && (document_->has_changes() || document_->has_strokes_aside());
 }
 
 void Workbench::set_tool(Tool tool) {
