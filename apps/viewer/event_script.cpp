@@ -114,6 +114,7 @@ ScriptStep read_key_step(const Value& line) {
 
 ScriptStep read_file(const Value& line, const char* key, FileStep::Kind kind) {
     const char* const more = kind == FileStep::Kind::open       ? "vdm"
+                             : kind == FileStep::Kind::drop     ? "vdm"
                              : kind == FileStep::Kind::save_map ? "preset"
                                                                 : key;
     check_keys(line, std::array<std::string_view, 2>{key, more});

@@ -44,7 +44,7 @@ struct FileStep {
     enum class Kind { open, drop, screenshot, picture, save, save_map };
     Kind kind = Kind::open;
     std::filesystem::path file;
-    std::filesystem::path map; ///< of an opened mesh
+    std::filesystem::path map; ///< of an opened or dropped mesh
     std::string preset;        ///< of a saved map: empty: its own convention
 };
 

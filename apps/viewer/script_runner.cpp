@@ -146,7 +146,7 @@ bool ScriptRunner::run(const FileStep& step, double now) {
     }
     case FileStep::Kind::drop:
         change_ = now;
-        workbench_.drop(step.file);
+        workbench_.drop(step.map.empty() ? std::vector{step.file} : std::vector{step.file, step.map});
         return true;
     case FileStep::Kind::screenshot:
         host_.take_screenshot(step.file);

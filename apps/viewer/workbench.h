@@ -49,8 +49,9 @@ class Workbench {
     bool is_loading() const { return loading_.valid(); }
     /// Why the file that was opened last could not be read; empty: it was.
     const std::string& load_error() const { return load_error_; }
-    /// A dropped file: a scene or mesh is opened; a map goes onto the mesh, an HDR becomes the environment.
-    void drop(const std::filesystem::path& file);
+    /// Dropped files: a scene or mesh is opened, with the map and the HDR that come with it; a map alone goes
+    /// onto the mesh that is open, an HDR becomes the environment.
+    void drop(const std::vector<std::filesystem::path>& files);
     bool save(const std::filesystem::path& file);
     /// In the convention of a preset (conventions.h); empty: in that which the map has.
     bool save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset = {});
@@ -171,6 +172,7 @@ class Workbench {
 
     void frame(const std::optional<uint32_t>& object);
     void forget_explanation();
+    void drop_alone(const std::filesystem::path& file);
     void load(SceneInput input, bool keeps_camera);
     void start(Load load);
     void adopt(Loaded loaded);

@@ -27,6 +27,12 @@ MapEdit make_whole_edit(const Displacement& map, int udim, const Texture& texels
     return edit;
 }
 
+/// Of all tiles of a map, where it has some.
+std::filesystem::path name_pattern(const std::filesystem::path& file) {
+    const std::filesystem::path pattern = find_tile_pattern(file);
+    return pattern.empty() ? file : pattern;
+}
+
 bool is_environment(const std::filesystem::path& file) { return cli::get_lower_extension(file) == ".hdr"; }
 
 } // namespace
@@ -109,7 +115,24 @@ void Workbench::watch_files() {
     watch_.watch(files);
 }
 
-void Workbench::drop(const std::filesystem::path& file) {
+void Workbench::drop(const std::vector<std::filesystem::path>& files) {
+    const auto mesh = std::ranges::find_if(files, is_mesh_file);
+    if (mesh == files.end()) {
+        for (const std::filesystem::path& file : files) drop_alone(file);
+        return;
+    }
+    SceneInput input{*mesh, {}, {}};
+    for (const std::filesystem::path& file : files) {
+        if (cli::get_kind(file) != cli::FileKind::map) continue;
+        if (is_environment(file))
+            input.mesh.environment = file;
+        else
+            input.mesh.displacement_map = name_pattern(file);
+    }
+    open(input);
+}
+
+void Workbench::drop_alone(const std::filesystem::path& file) {
     const cli::FileKind kind = cli::get_kind(file);
     if (kind != cli::FileKind::map) return open({file, {}, {}});
     if (!document_) {
@@ -128,8 +151,7 @@ void Workbench::drop(const std::filesystem::path& file) {
         has_news_ = true;
         return;
     }
-    input.mesh.displacement_map = find_tile_pattern(file);
-    if (input.mesh.displacement_map.empty()) input.mesh.displacement_map = file;
+    input.mesh.displacement_map = name_pattern(file);
     load(input, true);
 }
 

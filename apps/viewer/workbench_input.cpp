@@ -53,7 +53,7 @@ void Workbench::handle(const InputEvent& event) {
         held_keys_.erase(event.key);
         return;
     case Kind::drop:
-        for (const std::filesystem::path& file : event.files) drop(file);
+        drop(event.files);
     }
 }
 

@@ -67,6 +67,14 @@ TEST_F(WorkbenchTest, a_changed_convention_keeps_what_was_painted) {
     EXPECT_EQ(render_file("both.json"), bench_->picture()->image.pixels);
 }
 
+TEST_F(WorkbenchTest, a_mesh_opens_with_the_map_that_was_dropped_with_it) {
+    bench_->drop({folder_ / "maps" / "bumps.exr", folder_ / "meshes" / "plane.obj"});
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    ASSERT_EQ(bench_->document()->scene().displacements.size(), 1u);
+    EXPECT_EQ(bench_->document()->input().file, folder_ / "meshes" / "plane.obj");
+    EXPECT_FALSE(bench_->messages().empty());
+}
+
 TEST_F(WorkbenchTest, a_map_written_anew_is_shown_and_half_of_one_is_not) {
     open_scene();
     const std::vector<float> before = bench_->picture()->image.pixels;
@@ -97,7 +105,7 @@ TEST_F(WorkbenchTest, a_map_written_anew_is_shown_and_half_of_one_is_not) {
 TEST_F(WorkbenchTest, files_that_are_wrong_leave_what_was_open) {
     open_scene();
     std::ofstream(folder_ / "broken.json") << "{";
-    bench_->drop(folder_ / "broken.json");
+    bench_->drop({folder_ / "broken.json"});
     ASSERT_TRUE(reach([&] { return !bench_->is_loading(); }));
     EXPECT_NE(bench_->message().find("broken.json"), std::string::npos) << bench_->message();
     ASSERT_TRUE(bench_->document());
@@ -105,14 +113,14 @@ TEST_F(WorkbenchTest, files_that_are_wrong_leave_what_was_open) {
 }
 
 TEST_F(WorkbenchTest, a_map_dropped_on_a_mesh_displaces_it) {
-    bench_->drop(folder_ / "maps" / "bumps.exr");
+    bench_->drop({folder_ / "maps" / "bumps.exr"});
     EXPECT_FALSE(bench_->is_loading());
-    bench_->drop(folder_ / "meshes" / "plane.obj");
+    bench_->drop({folder_ / "meshes" / "plane.obj"});
     ASSERT_TRUE(reach_done()) << bench_->message();
     EXPECT_TRUE(bench_->document()->scene().displacements.empty());
     press_key(kLeft);
     const Camera camera = bench_->camera().get();
-    bench_->drop(folder_ / "maps" / "bumps.exr");
+    bench_->drop({folder_ / "maps" / "bumps.exr"});
     ASSERT_TRUE(reach_done()) << bench_->message();
     EXPECT_EQ(bench_->document()->scene().displacements.size(), 1u);
     EXPECT_EQ(bench_->camera().get().from, camera.from);
