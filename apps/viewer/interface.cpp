@@ -169,19 +169,8 @@ void Interface::draw_line() {
     ImGui::SetNextWindowPos({0, float(window_.height()) - height});
     ImGui::SetNextWindowSize({float(window_.width()) - kPanelWidth * scale, height});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {6 * scale, 4 * scale});
-    if (ImGui::Begin("Line", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoNav)) {
-        const RenderState render = workbench_.render_state();
-        const int total = workbench_.settings().image.spp;
-        const int done = workbench_.is_done() ? total : std::min(render.progress.samples_done, total);
-        if (workbench_.is_moving())
-            ImGui::Text("%.0f %% size", 100 * render.picture_scale);
-        else if (workbench_.document())
-            ImGui::Text("%d of %d samples", done, total);
-        ImGui::SameLine(130 * scale);
-        ImGui::TextUnformatted(workbench_.message().empty() && !workbench_.document()
-                                   ? "Drop a scene or a mesh here. F1 lists keys."
-                                   : workbench_.message().c_str());
-    }
+    if (ImGui::Begin("Line", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoNav))
+        draw_state(workbench_, 150 * scale);
     ImGui::End();
     ImGui::PopStyleVar();
 }
@@ -196,6 +185,25 @@ void Interface::draw_explanation() {
     ImGui::End();
 }
 
+void Interface::ask_at_end() {
+    const std::filesystem::path file = state_.scene_file.empty() ? workbench_.suggest_file(".json")
+                                                                 : std::filesystem::path(state_.scene_file);
+    const EndAnswer answer = draw_end_question(file.filename().string());
+    if (answer == EndAnswer::none) return;
+    is_asking_ = false;
+    may_end_ = answer == EndAnswer::leave || (answer == EndAnswer::save && workbench_.save(file));
+}
+
+/// Somebody wants to end, and nothing is lost by it, or it is meant.
+bool Interface::has_ended() {
+    const bool is_wanted = window_.should_close() || workbench_.wants_to_end();
+    if (is_wanted && workbench_.has_unsaved()) is_asking_ = true;
+    if (is_wanted && !is_asking_) return true;
+    window_.refuse_close();
+    workbench_.set_wants_to_end(false);
+    return may_end_;
+}
+
 void Interface::draw() {
     refresh_texture();
     window_.begin_frame();
@@ -205,12 +213,13 @@ void Interface::draw() {
     draw_line();
     draw_explanation();
     if (workbench_.is_help_shown()) draw_help(workbench_);
+    if (is_asking_) ask_at_end();
     window_.end_frame();
 }
 
 void Interface::run(ScriptRunner* script, double start) {
     int frames = kRestFrames;
-    while (!window_.should_close() && !workbench_.wants_to_end() && !(script && script->wants_to_end())) {
+    while (!has_ended() && !(script && script->wants_to_end())) {
         const bool is_busy = workbench_.is_moving() || (script && !script->is_done());
         window_.wait_events(frames > 0 ? 0 : is_busy ? kMovingWait : kIdleWait);
         place_picture();
@@ -225,7 +234,8 @@ void Interface::run(ScriptRunner* script, double start) {
         note_statistics(workbench_.render_state(), workbench_.picture().get(), state_);
         poll_display();
         const ImGuiIO& io = ImGui::GetIO();
-        const bool is_at_rest = frames == 0 && !needs_texture_ && !io.WantCaptureMouse && !io.WantTextInput;
+        const bool is_at_rest =
+            frames == 0 && !needs_texture_ && !is_asking_ && !io.WantCaptureMouse && !io.WantTextInput;
         if (is_at_rest && !window_.has_screenshot_to_take()) continue;
         draw();
         frames = std::max(frames - 1, 0);

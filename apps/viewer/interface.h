@@ -39,6 +39,8 @@ class Interface {
     void draw_line();
     void draw_explanation();
     void poll_display();
+    void ask_at_end();
+    bool has_ended();
 
     Window& window_;
     Workbench& workbench_;
@@ -48,6 +50,7 @@ class Interface {
     std::shared_ptr<const ShownPicture> texture_picture_;
     ViewSettings texture_view_;
     bool needs_texture_ = true;
+    bool is_asking_ = false, may_end_ = false; ///< at the end, what becomes of changes
     DisplayTable display_;
     std::future<DisplayTable> next_display_; ///< being made
 };

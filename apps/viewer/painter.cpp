@@ -237,17 +237,31 @@ void Painter::end() {
     start_.reset();
 }
 
+MapMeaning Painter::exchange_meaning(const MapMeaning& meaning) {
+    MapMeaning other{meaning.displacement, {}};
+    document_.change_displacement(meaning.displacement, [&](Displacement& map) {
+        other.meaning = get_meaning(map);
+        std::vector<MapTile> tiles = std::move(map.tiles);
+        map = meaning.meaning;
+        map.tiles = std::move(tiles);
+    });
+    frames_.clear(); // the space may be another
+    return other;
+}
+
 std::vector<MapEdit> Painter::undo() {
     history_.undo(
         [&](const TilePlace& p) -> Texture& { return document_.paint_tile(p.displacement, p.udim); },
-        [&](const TilePlace& place, const TexelBox& box) { note_change(place, box); });
+        [&](const TilePlace& place, const TexelBox& box) { note_change(place, box); },
+        [&](const MapMeaning& meaning) { return exchange_meaning(meaning); });
     return take_edits();
 }
 
 std::vector<MapEdit> Painter::redo() {
     history_.redo(
         [&](const TilePlace& p) -> Texture& { return document_.paint_tile(p.displacement, p.udim); },
-        [&](const TilePlace& place, const TexelBox& box) { note_change(place, box); });
+        [&](const TilePlace& place, const TexelBox& box) { note_change(place, box); },
+        [&](const MapMeaning& meaning) { return exchange_meaning(meaning); });
     return take_edits();
 }
 

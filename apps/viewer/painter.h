@@ -33,6 +33,10 @@ class Painter {
 
     bool can_undo() const { return history_.can_undo(); }
     bool can_redo() const { return history_.can_redo(); }
+    bool has_strokes() const { return history_.has_strokes(); }
+    /// As StrokeHistory::note_meaning.
+    void note_meaning(const MapMeaning& before, bool is_new) { history_.note_meaning(before, is_new); }
+    /// Without edits where the step was how a map is meant, which the document has then.
     std::vector<MapEdit> undo();
     std::vector<MapEdit> redo();
     /// Of maps that were replaced nothing can be taken back.
@@ -58,6 +62,7 @@ class Painter {
     void apply(const Piece& piece, const SurfacePoint& point, int udim, Texture& texture);
     void smooth(const Piece& piece, Texture& texture) const;
     std::vector<MapEdit> grab(const ShownPicture& picture, float x, float y);
+    MapMeaning exchange_meaning(const MapMeaning& meaning);
     void note_change(const TilePlace& place, const TexelBox& box);
     std::vector<MapEdit> take_edits();
 

@@ -44,7 +44,15 @@ void draw_statistics_panel(const Workbench& workbench, const PanelState& state);
 /// Of a scene with frames: to play, to step, to slide over them. In one line.
 void draw_timeline(Workbench& workbench);
 
-/// Keys and buttons.
+/// How far the picture is, and the last message: whole under the mouse, with those before on a click.
+/// `indent`: where it begins.
+void draw_state(Workbench& workbench, float indent);
+
+enum class EndAnswer { none, save, leave, stay };
+/// Asks what becomes of changes when the viewer ends. `file`: what they would be saved as.
+EndAnswer draw_end_question(const std::string& file);
+
+/// Keys, buttons and panels.
 void draw_help(Workbench& workbench);
 
 } // namespace relief::viewer

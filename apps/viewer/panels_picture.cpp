@@ -1,4 +1,4 @@
-// Panels of how a scene is rendered, seen and painted; statistics; help.
+// Panels of how a scene is rendered, seen and painted; statistics.
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -138,43 +138,6 @@ void draw_statistics_panel(const Workbench& workbench, const PanelState& state) 
     draw_bytes("maps", s.displacement_bytes, total);
     draw_bytes("patch trees", s.bottom_cache_bytes, total);
     draw_bytes("rays", s.ray_buffers_bytes, total);
-}
-
-void draw_help(Workbench& workbench) {
-    constexpr const char* kLines[][2] = {
-        {"left button", "turns; a click selects and explains; paints where that is chosen"},
-        {"middle button", "turns; with shift moves, with control zooms (as Blender)"},
-        {"alt + left, middle, right", "turns, moves, zooms (as Maya: panel Camera)"},
-        {"right button", "looks around; with W A S D Q E flies, with shift faster"},
-        {"control + click", "brings what is there into the middle, and into focus"},
-        {"wheel, + and -", "nearer, farther"},
-        {"arrows", "turn; with a timeline left and right show the frame before and after"},
-        {"shift + left, right", "first and last frame of a timeline"},
-        {"space", "plays a timeline, or pauses it"},
-        {". and Home", "show the object that was clicked on; all objects"},
-        {"B", "paint or look"},
-        {"[ and ]", "smaller and larger brush"},
-        {"control + Z, control + Y", "undo, redo"},
-        {"S", "saves the scene, and painted maps beside it"},
-        {"F12", "writes the picture once all its samples are there"},
-        {"control + Q", "ends"},
-        {"drop a file", "a scene or mesh opens; a map goes onto the mesh, an .hdr is the light"},
-    };
-    bool is_shown = true;
-    ImGui::SetNextWindowPos({40, 40}, ImGuiCond_Appearing);
-    if (ImGui::Begin("Keys and buttons (F1)", &is_shown,
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse) &&
-        ImGui::BeginTable("keys", 2)) {
-        for (const auto& [key, meaning] : kLines) {
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(key);
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(meaning);
-        }
-        ImGui::EndTable();
-    }
-    ImGui::End();
-    if (!is_shown) workbench.show_help(false);
 }
 
 } // namespace relief::viewer

@@ -188,9 +188,7 @@ void draw_displacement_panel(Workbench& workbench, PanelState& state) {
     draw_doubts(workbench);
     draw_map_file(workbench, state);
     if (!is_changed) return;
-    workbench.change_document([&](Document& document) {
-        document.change_displacement(state.displacement, [&](Displacement& changed) { changed = map; });
-    });
+    workbench.change_displacement(state.displacement, [&](Displacement& changed) { changed = map; });
 }
 
 void draw_camera_panel(Workbench& workbench) {

@@ -68,8 +68,7 @@ void set_displacement(const Value& values, Workbench& workbench) {
         changed.has_midlevel = true;
     }
     if (values.contains("flip_v")) changed.flip_v = values["flip_v"].get<bool>();
-    workbench.change_document(
-        [&](Document& d) { d.change_displacement(index, [&](Displacement& map) { map = changed; }); });
+    workbench.change_displacement(index, [&](Displacement& map) { map = changed; });
 }
 
 void set_environment(const Value& values, Workbench& workbench) {

@@ -47,6 +47,23 @@ void paste_texels(const Texture& texels, const TexelBox& box, Texture& to) {
     paste_rows(texels.halves, box, to.width, to.halves);
 }
 
+Displacement get_meaning(const Displacement& map) {
+    Displacement meaning = map;
+    meaning.tiles.clear();
+    return meaning;
+}
+
+void StrokeHistory::note_meaning(const MapMeaning& before, bool is_new) {
+    undone_.clear();
+    const auto* const last = done_.empty() ? nullptr : std::get_if<MapMeaning>(&done_.back());
+    if (is_new || !last || last->displacement != before.displacement) done_.emplace_back(before);
+}
+
+bool StrokeHistory::has_strokes() const {
+    const auto is_stroke = [](const Step& step) { return std::holds_alternative<Stroke>(step); };
+    return std::ranges::any_of(done_, is_stroke) || std::ranges::any_of(undone_, is_stroke);
+}
+
 TexelBox StrokeHistory::get_box(const BlockKey& key, const Texture& map) {
     return {int(key.column * kBlockSide), int(key.row * kBlockSide),
             int(std::min((key.column + 1) * kBlockSide, map.width)),
@@ -69,19 +86,21 @@ void StrokeHistory::keep(const TilePlace& place, const Texture& texture, const T
 }
 
 void StrokeHistory::end() {
-    if (open_ && !open_->empty()) done_.push_back(std::move(*open_));
+    if (open_ && !open_->empty()) done_.emplace_back(std::move(*open_));
     open_.reset();
     forget_oldest();
 }
 
 void StrokeHistory::forget_oldest() {
     size_t bytes = 0;
-    for (const Stroke& stroke : done_)
-        for (const auto& [key, texels] : stroke) bytes += texels.byte_count();
-    while (bytes > kMostBytes && done_.size() > 1) {
-        for (const auto& [key, texels] : done_.front()) bytes -= texels.byte_count();
-        done_.pop_front();
-    }
+    const auto count_bytes = [](const Step& step) {
+        size_t count = 0;
+        if (const auto* const stroke = std::get_if<Stroke>(&step))
+            for (const auto& [key, texels] : *stroke) count += texels.byte_count();
+        return count;
+    };
+    for (const Step& step : done_) bytes += count_bytes(step);
+    for (; bytes > kMostBytes && done_.size() > 1; done_.pop_front()) bytes -= count_bytes(done_.front());
 }
 
 void StrokeHistory::clear() {

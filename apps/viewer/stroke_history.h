@@ -1,4 +1,5 @@
-// What strokes changed, in blocks of texels, so that they can be taken back and made again.
+// What strokes changed, in blocks of texels, and how maps were meant before that was changed, so that both
+// can be taken back and made again.
 #pragma once
 
 #include <compare>
@@ -8,8 +9,10 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "relief/image.h"
+#include "relief/scene.h"
 #include "viewer/brush.h"
 
 namespace relief::viewer {
@@ -20,6 +23,13 @@ struct TilePlace {
     int udim = 1001;
     friend auto operator<=>(const TilePlace&, const TilePlace&) = default;
 };
+
+/// How a displacement was meant; its texels are left out.
+struct MapMeaning {
+    size_t displacement = 0;
+    Displacement meaning;
+};
+Displacement get_meaning(const Displacement& map);
 
 /// The texels of a rectangle inside of a map.
 Texture copy_texels(const Texture& from, const TexelBox& box);
@@ -38,18 +48,25 @@ class StrokeHistory {
     /// A stroke that changed nothing is none.
     void end();
     bool is_open() const { return open_.has_value(); }
+    /// How a map was meant before a change, a step by itself. Without `is_new` it goes on with the step
+    /// before where that is one of the same map.
+    void note_meaning(const MapMeaning& before, bool is_new);
+    bool has_strokes() const;
 
     bool can_undo() const { return !done_.empty() && !open_; }
     bool can_redo() const { return !undone_.empty() && !open_; }
     void clear();
 
     /// What the last stroke changed: calls `change(place, box)` for each block that was put back, and keeps
-    /// what `find(place)` holds there for redo.
-    template <class Find, class Change> void undo(const Find& find, const Change& change) {
-        if (can_undo()) exchange(done_, undone_, find, change);
+    /// what `find(place)` holds there for redo. Of a step that changed how a map is meant,
+    /// `set_meaning(before)` puts that back and returns what it was.
+    template <class Find, class Change, class SetMeaning>
+    void undo(const Find& find, const Change& change, const SetMeaning& set_meaning) {
+        if (can_undo()) exchange(done_, undone_, find, change, set_meaning);
     }
-    template <class Find, class Change> void redo(const Find& find, const Change& change) {
-        if (can_redo()) exchange(undone_, done_, find, change);
+    template <class Find, class Change, class SetMeaning>
+    void redo(const Find& find, const Change& change, const SetMeaning& set_meaning) {
+        if (can_redo()) exchange(undone_, done_, find, change, set_meaning);
     }
 
   private:
@@ -59,25 +76,36 @@ class StrokeHistory {
         friend auto operator<=>(const BlockKey&, const BlockKey&) = default;
     };
     using Stroke = std::map<BlockKey, Texture>;
+    using Step = std::variant<Stroke, MapMeaning>;
 
     static TexelBox get_box(const BlockKey& key, const Texture& map);
     void forget_oldest();
 
     template <class Find, class Change>
-    void exchange(std::deque<Stroke>& from, std::deque<Stroke>& to, const Find& find, const Change& change) {
+    static Stroke put_back(Stroke& stroke, const Find& find, const Change& change) {
         Stroke other;
-        for (auto& [key, texels] : from.back()) {
+        for (auto& [key, texels] : stroke) {
             Texture& map = find(key.place);
             const TexelBox box = get_box(key, map);
             other[key] = copy_texels(map, box);
             paste_texels(texels, box, map);
             change(key.place, box);
         }
-        from.pop_back();
-        to.push_back(std::move(other));
+        return other;
     }
 
-    std::deque<Stroke> done_, undone_;
+    template <class Find, class Change, class SetMeaning>
+    static void exchange(std::deque<Step>& from, std::deque<Step>& to, const Find& find, const Change& change,
+                         const SetMeaning& set_meaning) {
+        Step step = std::move(from.back());
+        from.pop_back();
+        if (auto* const stroke = std::get_if<Stroke>(&step))
+            to.push_back(put_back(*stroke, find, change));
+        else
+            to.push_back(set_meaning(std::get<MapMeaning>(step)));
+    }
+
+    std::deque<Step> done_, undone_;
     std::optional<Stroke> open_;
 };
 

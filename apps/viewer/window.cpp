@@ -232,6 +232,8 @@ void Window::wake() {
     if (gate.is_open) glfwPostEmptyEvent();
 }
 
+void Window::refuse_close() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+
 bool Window::should_close() const { return glfwWindowShouldClose(window_) != 0; }
 
 void Window::inject(const InputEvent& event) {

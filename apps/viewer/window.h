@@ -27,6 +27,7 @@ class Window {
     /// Ends the waiting; by any thread. Without a window nothing.
     static void wake();
     bool should_close() const;
+    void refuse_close();
 
     /// An event of a script, which holds the mouse from the first one on.
     void inject(const InputEvent& event);

@@ -19,6 +19,8 @@ namespace {
 constexpr double kRest = 0.12, kHeldRest = 0.3, kPaintRest = 0.5;
 /// Seconds between two looks at files.
 constexpr double kWatchInterval = 0.2;
+/// Seconds between two changes of a map that are taken back together.
+constexpr double kChangeInterval = 1;
 /// Messages that are kept.
 constexpr size_t kMostMessages = 20;
 /// Way that flying takes a second, in distances of the target.
@@ -105,6 +107,17 @@ void Workbench::change_document(const std::function<void(Document&)>& change) {
     set_motion(Motion::moving);
 }
 
+void Workbench::change_displacement(size_t index, const std::function<void(Displacement&)>& change) {
+    if (!document_ || !painter_) return;
+    const bool is_new = now_ - last_map_change_ > kChangeInterval;
+    last_map_change_ = now_;
+    change_document([&](Document& document) {
+        const MapMeaning before{index, get_meaning(document.scene().displacements.at(index))};
+        document.change_displacement(index, change);
+        painter_->note_meaning(before, is_new);
+    });
+}
+
 void Workbench::note_message() {
     if (message_.empty() || (!messages_.empty() && messages_.front() == message_)) return;
     messages_.push_front(message_);
@@ -130,11 +143,19 @@ void Workbench::send(std::vector<MapEdit> edits) {
 }
 
 void Workbench::undo() {
-    if (can_undo()) attempt([&] { send(painter_->undo()); });
+    if (can_undo()) take_step([&] { return painter_->undo(); });
 }
 
 void Workbench::redo() {
-    if (can_redo()) attempt([&] { send(painter_->redo()); });
+    if (can_redo()) take_step([&] { return painter_->redo(); });
+}
+
+void Workbench::take_step(const std::function<std::vector<MapEdit>()>& step) {
+    last_map_change_ = -kChangeInterval;
+    attempt([&] {
+        std::vector<MapEdit> edits = step();
+        edits.empty() ? set_motion(Motion::moving) : send(std::move(edits));
+    });
 }
 
 void Workbench::explain(float x, float y) {
@@ -180,9 +201,9 @@ void Workbench::request(std::vector<MapEdit> edits) {
     request.camera = camera_.get();
     request.motion = motion_;
     request.shot = shot_ ? scene_count_ : 0;
-    request.use = tool_ == Tool::paint || can_undo() || can_redo() ? SessionUse::edits
-                  : shot_                                          ? SessionUse::scenes
-                                                                   : SessionUse::views;
+    request.use = tool_ == Tool::paint || (painter_ && painter_->has_strokes()) ? SessionUse::edits
+                  : shot_                                                       ? SessionUse::scenes
+                                                                                : SessionUse::views;
     const uint64_t version = loop_.show(request, std::move(edits));
     if (std::exchange(has_changed_, false)) wanted_version_ = version;
 }
@@ -290,6 +311,7 @@ bool Workbench::update(double now) {
         needs_request_ = true;
     }
     if (needs_request_) request();
+    note_message();
     if (document_ && !is_painted_on) state_.keep_painted(now_, *document_);
     return std::exchange(has_news_, false);
 }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -68,6 +69,9 @@ class Workbench {
     /// `now`: seconds of any clock that goes on. True where there is something new to draw.
     bool update(double now);
     bool wants_to_end() const { return wants_to_end_; }
+    void set_wants_to_end(bool wants_to_end) { wants_to_end_ = wants_to_end; }
+    /// Something was changed or painted, at any frame, since the scene was saved.
+    bool has_unsaved() const;
     bool is_help_shown() const { return is_help_shown_; }
     void show_help(bool is_shown) { is_help_shown_ = is_shown; }
     /// Something moves by itself: update() is to be called soon again.
@@ -110,6 +114,8 @@ class Workbench {
     void change_settings(const std::function<void(RenderSettings&)>& change);
     /// Calls `change`, shows what came of it, and reports errors as messages.
     void change_document(const std::function<void(Document&)>& change);
+    /// The same of how a map is meant, which undo() takes back; changes within a second count as one.
+    void change_displacement(size_t index, const std::function<void(Displacement&)>& change);
     Brush& brush() { return brush_; }
     Tool tool() const { return tool_; }
     void set_tool(Tool tool);
@@ -129,6 +135,8 @@ class Workbench {
     bool is_shown() const;
     bool is_done() const;
     const std::string& message() const { return message_; }
+    /// The last ones, the newest first.
+    const std::deque<std::string>& messages() const { return messages_; }
     /// Of the pixel that was clicked on; without text: none.
     const cli::PixelExplanation& explanation() const { return explanation_; }
     /// Of the pixel that was explained, pixels of the whole picture; nothing: none.
@@ -187,11 +195,13 @@ class Workbench {
     void reload(const std::vector<std::filesystem::path>& files);
     void reread(const std::vector<std::filesystem::path>& maps);
     void poll_jobs();
+    void note_message();
     void take_picture();
     void take_denoised();
     void request(std::vector<MapEdit> edits = {});
     void set_motion(Motion motion);
     void send(std::vector<MapEdit> edits);
+    void take_step(const std::function<std::vector<MapEdit>()>& step);
     void fly(double seconds);
     void press(const InputEvent& event);
     void move(const InputEvent& event);
@@ -235,13 +245,14 @@ class Workbench {
     bool needs_snapshot_ = true, needs_request_ = false;
     bool has_changed_ = false; ///< something that is seen, since the last request
     Motion motion_ = Motion::still;
-    double now_ = 0, last_motion_ = 0, last_poll_ = 0, first_picture_time_ = -1;
+    double now_ = 0, last_motion_ = 0, last_poll_ = 0, first_picture_time_ = -1, last_map_change_ = -1;
     uint64_t wanted_version_ = 0;
     std::shared_ptr<const ShownPicture> picture_;
     std::shared_ptr<const ShownPicture> denoised_; ///< of the same version; null: none
     bool is_denoised_ = false;
     std::filesystem::path output_; ///< a picture to write when it is done; empty: none
     std::string message_, last_error_, load_error_;
+    std::deque<std::string> messages_;
     cli::PixelExplanation explanation_;
     std::optional<Vec2f> explained_pixel_;
     std::optional<uint32_t> selected_object_;

@@ -42,6 +42,11 @@ SCRIPT = [
     {"screenshot": "help.png"},
     {"picture": "seen.exr"},
     {"save": "saved.json"},
+    {"set": {"midlevel": 0.01}},
+    {"key": "Q", "modifiers": ["control"]},
+    {"wait": 0.5},
+    {"screenshot": "question.png"},  # it asks, and does not end
+    {"wait": 0.2},
     {"quit": True},
 ]
 FRAMES = [
@@ -120,7 +125,7 @@ def check_session(viewer):
     assert "first_picture_s" in lines[0]
     drag = next(line for line in lines if line.get("step") == "drag")
     assert drag["pictures"] >= 3, drag
-    for name in ("opened", "painted", "help"):
+    for name in ("opened", "painted", "help", "question"):
         assert (viewer.folder / f"{name}.png").stat().st_size > 10000, name
     assert viewer.compare("scaled.exr", "painted.exr") > 300
     assert viewer.compare("scaled.exr", "undone.exr") == 0

@@ -67,6 +67,42 @@ TEST_F(WorkbenchTest, a_changed_convention_keeps_what_was_painted) {
     EXPECT_EQ(render_file("both.json"), bench_->picture()->image.pixels);
 }
 
+TEST_F(WorkbenchTest, how_a_map_is_meant_and_strokes_are_taken_back_in_their_order) {
+    open_scene();
+    const std::vector<float> before = bench_->picture()->image.pixels;
+    const auto get_map = [&]() -> const Displacement& {
+        return bench_->document()->scene().displacements[0];
+    };
+    const Displacement meaning = get_map();
+    for (const float scale : {1.25f, 1.5f, 2.0f}) // one drag of a slider
+        bench_->change_displacement(0, [&](Displacement& map) { map.scale = {scale, scale, scale}; });
+    EXPECT_TRUE(bench_->has_unsaved());
+    ASSERT_TRUE(reach_done());
+    const std::vector<float> scaled = bench_->picture()->image.pixels;
+    bench_->set_tool(Tool::paint);
+    ASSERT_TRUE(reach_done());
+    drag(18, 14, 32, 18);
+    ASSERT_TRUE(reach_done());
+    EXPECT_NE(bench_->picture()->image.pixels, scaled);
+    press_key('Z', {.control = true});
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, scaled);
+    press_key('Z', {.control = true});
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(get_map().scale, meaning.scale);
+    EXPECT_EQ(bench_->picture()->image.pixels, before);
+    EXPECT_FALSE(bench_->can_undo());
+    press_key('Y', {.control = true});
+    EXPECT_EQ(get_map().scale.x, 2);
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, scaled);
+    press_key('Y', {.control = true});
+    ASSERT_TRUE(reach_done());
+    EXPECT_NE(bench_->picture()->image.pixels, scaled);
+    ASSERT_TRUE(bench_->save(folder_ / "redone.json"));
+    EXPECT_FALSE(bench_->has_unsaved());
+}
+
 TEST_F(WorkbenchTest, a_mesh_opens_with_the_map_that_was_dropped_with_it) {
     bench_->drop({folder_ / "maps" / "bumps.exr", folder_ / "meshes" / "plane.obj"});
     ASSERT_TRUE(reach_done()) << bench_->message();
