@@ -52,8 +52,16 @@ void copy_named(const std::vector<Item>& from, std::vector<Item>& to,
 
 } // namespace
 
-void ChangedFields::note(const Displacement& before, const Displacement& after) {
-    displacements_[after.name] |= find_changes(before, after, kDisplacementFields);
+void ChangedFields::note(const Displacement& before, const Displacement& after, const Displacement& read) {
+    const Fields touched = find_changes(before, after, kDisplacementFields);
+    const Fields changed = find_changes(read, after, kDisplacementFields);
+    Fields& fields = displacements_[after.name];
+    fields = (fields & ~touched) | (touched & changed);
+}
+
+void ChangedFields::carry(const Displacement& from, Displacement& to) const {
+    const auto changed = displacements_.find(to.name);
+    if (changed != displacements_.end()) copy_fields(from, to, changed->second, kDisplacementFields);
 }
 
 void ChangedFields::note(const Material& before, const Material& after) {

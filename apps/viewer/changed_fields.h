@@ -13,7 +13,8 @@ namespace relief::viewer {
 
 class ChangedFields {
   public:
-    void note(const Displacement& before, const Displacement& after);
+    /// `read`: as the file has it at this frame; what is that again counts as changed no more.
+    void note(const Displacement& before, const Displacement& after, const Displacement& read);
     void note(const Material& before, const Material& after);
     void note(const Environment& before, const Environment& after);
     void note(size_t light, const Light& before, const Light& after);
@@ -21,6 +22,8 @@ class ChangedFields {
     /// Gives `to`, the same scene at another frame, the fields of `from` that were changed: of displacements
     /// and materials by their names, of lights by their numbers where there are as many.
     void carry(const Scene& from, Scene& to) const;
+    /// The same of one displacement.
+    void carry(const Displacement& from, Displacement& to) const;
 
   private:
     using Fields = uint32_t; ///< a bit each

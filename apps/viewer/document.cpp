@@ -93,7 +93,7 @@ Document::Document(SceneInput input, LoadedInput loaded)
     if (meshes_.size() != scene_.meshes.size()) meshes_ = share_meshes(scene_.meshes);
     if (loaded.shot) input_.frame = loaded.frame;
     make_names_distinct(scene_.displacements);
-    note_read_tiles();
+    note_read_maps();
 }
 
 void Document::touch() {
@@ -114,7 +114,7 @@ void Document::change_displacement(size_t index, const std::function<void(Displa
     const Displacement before = map;
     change(map);
     map.assumed = {};
-    changed_.note(before, map);
+    changed_.note(before, map, read_maps_.at(index));
     doubts_.clear();
     changes_.displacements.insert(map.name);
     touch();

@@ -18,6 +18,7 @@
 #include "viewer/changed_fields.h"
 #include "viewer/shared_scene.h"
 #include "viewer/shot_reader.h"
+#include "viewer/stroke_history.h"
 
 namespace relief::viewer {
 
@@ -63,6 +64,8 @@ class Document {
     /// Another frame of the same file. What was changed stays changed; strokes stay where the frame has the
     /// map that they are on, others come back with it.
     FrameStrokes show_frame(ShotFrame next);
+    /// Gives how a map was meant at another frame what it has at this one, but for what was changed.
+    void follow_frame(MapMeaning& meaning) const;
     /// Strokes that are not saved are on maps of other frames.
     bool has_strokes_aside() const;
     const Scene& scene() const { return scene_; }
@@ -112,7 +115,7 @@ class Document {
         bool is_saved = false;
     };
 
-    void note_read_tiles();
+    void note_read_maps();
     std::string name_source(const Texture& texture) const;
     void put_aside(const Scene& next, FrameStrokes& strokes);
     void take_back(Scene& next, FrameStrokes& strokes);
@@ -133,6 +136,7 @@ class Document {
     SharedMeshes meshes_; ///< of the scene
     uint64_t content_ = 0;
     ChangedFields changed_;
+    std::vector<Displacement> read_maps_;                      ///< as the file has them at this frame
     std::map<TilePlace, std::shared_ptr<const Texture>> read_; ///< as the reader gave them
     std::map<TileSource, AsideTile> aside_;                    ///< painted maps of other frames
     std::vector<std::string> doubts_;

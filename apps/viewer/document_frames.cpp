@@ -11,8 +11,9 @@
 
 namespace relief::viewer {
 
-void Document::note_read_tiles() {
+void Document::note_read_maps() {
     read_.clear();
+    read_maps_ = scene_.displacements;
     for (const Displacement& map : scene_.displacements)
         for (const MapTile& tile : map.tiles) read_[{map.name, tile.udim}] = tile.texture;
 }
@@ -78,6 +79,7 @@ FrameStrokes Document::show_frame(ShotFrame next) {
     }
     commit();
     make_names_distinct(next.scene->displacements);
+    read_maps_ = next.scene->displacements;
     changed_.carry(scene_, *next.scene);
     put_aside(*next.scene, strokes);
     input_.frame = next.frame; // of the files that are named by it
@@ -87,6 +89,12 @@ FrameStrokes Document::show_frame(ShotFrame next) {
     content_ = next.content;
     ++version_;
     return strokes;
+}
+
+void Document::follow_frame(MapMeaning& meaning) const {
+    if (meaning.displacement >= scene_.displacements.size()) return;
+    const Displacement before = std::exchange(meaning.meaning, get_meaning(read_maps_[meaning.displacement]));
+    changed_.carry(before, meaning.meaning);
 }
 
 bool Document::has_strokes_aside() const {

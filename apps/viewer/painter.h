@@ -41,8 +41,11 @@ class Painter {
     std::vector<MapEdit> redo();
     /// Of maps that were replaced nothing can be taken back.
     void forget() { history_.clear(), frames_.clear(); }
-    /// Meshes were replaced.
-    void forget_meshes() { frames_.clear(); }
+    /// Meshes were replaced, and values of maps have followed their keys.
+    void follow_frame() {
+        frames_.clear();
+        history_.change_meanings([&](MapMeaning& meaning) { document_.follow_frame(meaning); });
+    }
 
   private:
     /// A rectangle of the tile, the dab there, and its texels before a grab.

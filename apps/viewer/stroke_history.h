@@ -52,6 +52,12 @@ class StrokeHistory {
     /// before where that is one of the same map.
     void note_meaning(const MapMeaning& before, bool is_new);
     bool has_strokes() const;
+    /// Calls `change(meaning)` for each step that changed how a map is meant.
+    template <class Change> void change_meanings(const Change& change) {
+        for (std::deque<Step>* const steps : {&done_, &undone_})
+            for (Step& step : *steps)
+                if (auto* const meaning = std::get_if<MapMeaning>(&step)) change(*meaning);
+    }
 
     bool can_undo() const { return !done_.empty() && !open_; }
     bool can_redo() const { return !undone_.empty() && !open_; }

@@ -100,7 +100,7 @@ void Workbench::adopt(ReadFrame read) {
     document_->set_camera(camera_.get());
     if (is_view && has_own_camera_) return; // nothing that is seen differs
     if (!is_view) {
-        strokes.has_other_maps ? painter_->forget() : painter_->forget_meshes();
+        strokes.has_other_maps ? painter_->forget() : painter_->follow_frame();
         if (selected_object_ && *selected_object_ >= document_->scene().objects.size())
             selected_object_.reset();
         watch_files();

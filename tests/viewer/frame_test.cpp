@@ -104,6 +104,23 @@ TEST_F(FrameTest, what_was_changed_stays_and_all_else_follows_its_keys) {
     EXPECT_EQ(render_file("changed.json"), bench_->picture()->image.pixels);
 }
 
+TEST_F(FrameTest, what_is_taken_back_at_another_frame_follows_its_keys_again) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    bench_->change_displacement(0, [](Displacement& map) { map.midlevel = {0, 0, 0.1f}; });
+    show(3);
+    EXPECT_EQ(map().midlevel.z, 0.1f);
+    bench_->undo();
+    EXPECT_EQ(map().midlevel.z, 0);
+    EXPECT_EQ(map().scale.x, 1.5f);
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
+    bench_->change_displacement(0, [](Displacement& map) { map.scale = {9, 9, 9}; });
+    bench_->undo();
+    show(5);
+    EXPECT_EQ(map().scale.x, 2);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(5));
+}
+
 TEST_F(FrameTest, a_camera_with_keys_moves_until_somebody_else_moves_it) {
     open_animated("\"from\"", R"({"keys": [[1, [0, 0, 4]], [5, [4, 0, 4]]]})");
     const uint64_t content = bench_->document()->content();
