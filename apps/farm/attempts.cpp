@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "common/values.h"
+#include "farm/folder_names.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -141,15 +142,10 @@ fs::path get_attempt_file(const FarmJob& job, const Attempt& attempt) {
 
 std::vector<Attempt> list_attempts(const FarmJob& job, uint32_t task) {
     std::vector<Attempt> attempts;
-    std::error_code code;
-    const std::string start = fmt::format("{}.", task);
-    for (fs::directory_iterator it(get_state_folder(job, task), code), end; !code && it != end;
-         it.increment(code)) {
-        const std::string name = it->path().filename().string();
-        if (!name.starts_with(start)) continue;
-        if (std::optional<Attempt> attempt = parse_attempt_name(name))
-            attempts.push_back(*std::move(attempt));
-    }
+    visit_names(get_state_folder(job, task), [&](const char* name) {
+        std::optional<Attempt> attempt = parse_attempt_name(name);
+        if (attempt && attempt->task == task) attempts.push_back(*std::move(attempt));
+    });
     return attempts;
 }
 

@@ -21,6 +21,7 @@
 #include "common/denoiser_search.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
+#include "farm/folder_names.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
@@ -243,13 +244,10 @@ std::vector<bool> list_written_frames(const FarmJob& job) {
     std::vector<std::pair<std::string, size_t>> names;
     for (size_t k = 0; k < job.frames.size(); ++k) names.emplace_back(std::to_string(job.frames[k]), k);
     std::ranges::sort(names);
-    std::error_code code;
-    for (fs::directory_iterator it(get_written_folder(job), code), end; !code && it != end;
-         it.increment(code)) {
-        const std::string name = it->path().filename().string();
+    visit_names(get_written_folder(job), [&](std::string_view name) {
         const auto found = std::ranges::lower_bound(names, name, {}, &std::pair<std::string, size_t>::first);
         if (found != names.end() && found->first == name) written[found->second] = true;
-    }
+    });
     return written;
 }
 

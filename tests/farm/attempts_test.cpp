@@ -1,5 +1,6 @@
 #include "farm/attempts.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -129,6 +130,23 @@ TEST_F(FarmStates, the_best_attempt_counts_and_all_are_told) {
     EXPECT_EQ(states.failed.size(), 1u);
     EXPECT_EQ(states.files_looked_at, 1u) << "the one that runs";
     EXPECT_EQ(list_tasks(states, {TaskState::failed, TaskState::partial}), (std::vector<uint32_t>{2, 3}));
+}
+
+TEST_F(FarmStates, attempts_are_told_in_the_order_of_tasks_and_names) {
+    job_.frames.resize(10000); // in ten folders, which are read at once
+    std::vector<std::string> expected;
+    for (uint32_t task = 500; task < job_.task_count(); task += 4000)
+        for (const char* who : {"h-1-1", "c-1-1", "a-1-1", "g-1-1", "e-1-1", "b-1-1", "d-1-1", "f-1-1"}) {
+            add(task, who, AttemptState::failed);
+            expected.push_back(std::to_string(task + 100000) + who);
+        }
+    std::ranges::sort(expected);
+    std::vector<std::string> told;
+    const JobStates states = read_states(job_);
+    for (const Attempt& attempt : states.failed)
+        told.push_back(std::to_string(attempt.task + 100000) + attempt.who);
+    EXPECT_EQ(states.folders_read, 10u);
+    EXPECT_EQ(told, expected);
 }
 
 TEST_F(FarmStates, silence_makes_an_attempt_stale) {
