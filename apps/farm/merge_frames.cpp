@@ -21,6 +21,7 @@
 #include "common/denoiser_search.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
+#include "farm/damaged_part.h"
 #include "farm/folder_names.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -62,17 +63,11 @@ std::vector<FilmPart> list_parts(const FarmJob& job, size_t frame_index, const R
     return parts;
 }
 
-/// The task is to be rendered again; what its film was stays beside its place.
-void declare_corrupt(const FarmJob& job, uint32_t task) {
-    for (const Attempt& attempt : list_attempts(job, task)) {
-        if (attempt.state != AttemptState::done) continue;
-        Attempt corrupt = attempt;
-        corrupt.state = AttemptState::corrupt;
-        change_attempt(job, attempt, corrupt);
-    }
-    const fs::path film = get_film_file(job, task);
-    std::error_code ignored;
-    fs::rename(film, film.string() + ".corrupt", ignored);
+/// In the order of list_parts.
+std::vector<std::optional<FileIdentity>> identify_films(const std::vector<FilmPart>& parts) {
+    std::vector<std::optional<FileIdentity>> films;
+    for (const FilmPart& part : parts) films.push_back(identify_file(part.name));
+    return films;
 }
 
 /// Writes frames of one job, one after another.
@@ -87,7 +82,8 @@ class FrameMerger {
                 std::make_shared<const Denoiser>(load_denoiser(options_.settings.device.threads));
     }
 
-    /// The exit code of `relief render` for this frame; nullopt: a part is damaged, and `report` says which.
+    /// The exit code of `relief render` for this frame; nullopt: a part was damaged or missing, which is
+    /// noted unless another machine has replaced it or written the frame.
     std::optional<int> merge(size_t frame_index, MergeReport& report) {
         const int frame = job_.frames[frame_index];
         const double start = get_seconds();
@@ -96,6 +92,7 @@ class FrameMerger {
         const RenderSettings settings = prepare_picture(options_, scene);
         Checkpoints checkpoints;
         checkpoints.parts = list_parts(job_, frame_index, settings);
+        const std::vector<std::optional<FileIdentity>> films = identify_films(checkpoints.parts);
         const double load_s = get_seconds() - start;
         size_t printed_warnings = 0;
         RenderResult result;
@@ -104,7 +101,11 @@ class FrameMerger {
             result = render_shot(shot_, frame, std::move(scene), settings, &watcher, checkpoints);
             if (watcher.is_refused()) return kExitWarnings;
         } catch (const Error& error) {
-            if (!note_damage(error, frame_index, checkpoints.parts, report)) throw;
+            const auto part = std::ranges::find(checkpoints.parts, error.where(), &FilmPart::name);
+            if (part == checkpoints.parts.end()) throw;
+            const auto index = size_t(part - checkpoints.parts.begin());
+            if (!is_frame_written(job_, frame_index))
+                note_damage(error, frame_index, index, films[index], report);
             return std::nullopt;
         }
         return finish_picture(options_, settings, name_frame(job_.pictures, frame), {start, load_s}, result,
@@ -112,17 +113,14 @@ class FrameMerger {
     }
 
   private:
-    /// Whether the error is of one of the parts.
-    bool note_damage(const Error& error, size_t frame_index, const std::vector<FilmPart>& parts,
-                     MergeReport& report) {
-        const auto part = std::ranges::find(parts, error.where(), &FilmPart::name);
-        if (part == parts.end()) return false;
-        const uint32_t task = uint32_t(frame_index) * job_.tasks_a_frame() + uint32_t(part - parts.begin());
+    void note_damage(const Error& error, size_t frame_index, size_t part,
+                     const std::optional<FileIdentity>& film, MergeReport& report) {
+        const uint32_t task = uint32_t(frame_index) * job_.tasks_a_frame() + uint32_t(part);
+        check_openable(get_film_file(job_, task));
+        if (!declare_corrupt(job_, task, film)) return;
         fmt::print(stderr, "relief: warning: a part is damaged: task {}, {}: {}\n", task,
                    describe_task(job_, find_task(job_, task)), error.what());
-        declare_corrupt(job_, task);
         report.corrupt.push_back(task);
-        return true;
     }
 
     const FarmJob& job_;
@@ -178,7 +176,10 @@ void merge_frame(const FarmJob& job, const MergeOptions& options, FrameMerger& m
         exit_code = run_guarded([]() -> int { throw; });
     }
     if (!exit_code) {
-        report.missing.push_back(frame_index);
+        if (is_frame_written(job, frame_index))
+            ++report.kept;
+        else
+            report.missing.push_back(frame_index);
         return;
     }
     if (report.exit_code == kExitDone) report.exit_code = *exit_code;

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -23,6 +24,7 @@
 #include "common/command_line.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
+#include "farm/damaged_part.h"
 #include "farm/preview.h"
 #include "farm/running_attempt.h"
 #include "relief/error.h"
@@ -79,6 +81,7 @@ RenderResult render_task(const FarmJob& job, const FarmTask& task, const RenderO
     size_t printed_warnings = 0;
     RenderWatcher watcher(options, printed_warnings, describe_task(job, task));
     LoadedTask loaded = load_task(task, options, shot);
+    const std::optional<FileIdentity> earlier = identify_file(get_partial_film_file(job, task.index));
     checkpoints.parts = find_earlier_samples(job, task, loaded.settings);
     try {
         return render_shot(shot, task.frame, std::move(loaded.scene), loaded.settings, &watcher, checkpoints);
@@ -86,8 +89,7 @@ RenderResult render_task(const FarmJob& job, const FarmTask& task, const RenderO
         if (checkpoints.parts.empty() || error.where() != checkpoints.parts.front().name) throw;
         fmt::print(stderr, "relief: warning: the samples of an earlier attempt are left out: {}\n",
                    error.what());
-        std::error_code ignored;
-        fs::remove(checkpoints.parts.front().name, ignored);
+        if (earlier) set_aside(checkpoints.parts.front().name, *earlier);
         checkpoints.parts.clear();
         loaded = load_task(task, options, shot);
         return render_shot(shot, task.frame, std::move(loaded.scene), loaded.settings, &watcher, checkpoints);
