@@ -124,6 +124,32 @@ TEST_F(GltfAnimations, tell_what_is_wrong_with_them) {
     EXPECT_HAS(message_of([&] { parse_at(0); }), "times do not rise");
 }
 
+TEST_F(GltfAnimations, warn_of_skins_which_are_not_read) {
+    std::vector<std::string> warnings;
+    const auto parse = [&] {
+        const auto refuse = [](const std::string&) { return std::string(); };
+        parse_gltf(document_.make_glb(), "walk.glb", refuse, {}, &warnings);
+    };
+    parse();
+    EXPECT_TRUE(warnings.empty());
+    document_.json["skins"] = {{{"joints", {0}}}};
+    document_.json["nodes"][1]["skin"] = 0;
+    parse();
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS(warnings[0], "walk.glb: node 1 would be bent by a skin");
+    document_.json["nodes"][1]["name"] = "body";
+    add_channel(0, "translation", add_times({0, 1}), document_.add_floats("VEC3", {0, 0, 0, 8, 0, 0}));
+    write("walk.glb", document_.make_glb());
+    EXPECT_HAS(load_mesh_scene(folder_ / "walk.glb", {}).warnings.at(0),
+               "node 'body' would be bent by a skin");
+    write("s.json", R"({"objects": [{"mesh": "a"}, {"mesh": "b"}], "meshes": {"b": {"file": "walk.glb"},
+        "a": {"file": "walk.glb", "animation": "go", "time": {"keys": [[0, 0], [8, 1]]}}}})");
+    Shot shot(folder_ / "s.json");
+    EXPECT_EQ(shot.load(2).warnings.size(), 1u) << "once a file";
+    EXPECT_EQ(shot.load(3).warnings.size(), 1u);
+    EXPECT_EQ(shot.update(3.5).scene->warnings.size(), 1u) << "the same one";
+}
+
 TEST_F(GltfAnimations, follow_the_keys_of_a_scene) {
     add_channel(0, "translation", add_times({0, 1}), document_.add_floats("VEC3", {0, 0, 0, 8, 0, 0}));
     write("walk.glb", document_.make_glb());

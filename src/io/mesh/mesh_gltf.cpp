@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -134,6 +135,20 @@ class GltfBuilder {
         return std::move(mesh_);
     }
 
+    /// What of the file does not show in the mesh.
+    std::vector<std::string> list_warnings() const {
+        if (skinned_.empty()) return {};
+        constexpr size_t kMostNamed = 4;
+        std::string names;
+        for (size_t k = 0; k < std::min(skinned_.size(), kMostNamed); ++k)
+            names += (k == 0 ? "" : ", ") + skinned_[k];
+        if (skinned_.size() > kMostNamed) names += fmt::format(" and {} more", skinned_.size() - kMostNamed);
+        return {fmt::format("{}: {} would be bent by a skin, which is not read: it is seen in its bind pose; "
+                            "export it posed, or "
+                            "for an animation as a file a frame, and name these with ####",
+                            name_, names)};
+    }
+
   private:
     struct Instance {
         const JsonNode* mesh;
@@ -199,6 +214,7 @@ class GltfBuilder {
             if (const auto mesh_index = item.node->find("mesh")) {
                 const JsonNode& mesh = GltfFile::resolve(*mesh_index, meshes_, "mesh");
                 instances_.push_back({&mesh, world_from_node, read_weights(*item.node, mesh, pose)});
+                if (item.node->find("skin")) skinned_.push_back(describe_node(*item.node, index));
             }
             const auto children = item.node->find("children");
             if (!children) continue;
@@ -210,6 +226,11 @@ class GltfBuilder {
         if (nodes_.empty()) // a library of meshes
             for (const JsonNode& mesh : meshes_)
                 instances_.push_back({&mesh, {}, read_weights(mesh, mesh, {})});
+    }
+
+    static std::string describe_node(const JsonNode& node, size_t index) {
+        const auto name = node.find("name");
+        return name ? fmt::format("node '{}'", name->as_string()) : fmt::format("node {}", index);
     }
 
     /// A node below none of the roots has only itself above it.
@@ -308,6 +329,7 @@ class GltfBuilder {
     UvWelder uvs_;
     std::map<size_t, GltfPose> poses_; ///< of nodes that an animation moves
     std::vector<Instance> instances_;
+    std::vector<std::string> skinned_;                            ///< nodes
     std::map<const JsonNode*, std::vector<GltfPrimitive>> parts_; ///< of meshes, each read once
     std::vector<Corner> corners_;                                 ///< by vertex
     uint32_t copy_count_ = 0;
@@ -319,10 +341,13 @@ class GltfBuilder {
 } // namespace
 
 Mesh parse_gltf(std::string_view bytes, const std::string& name, const ReadBeside& read_beside,
-                const MeshReadOptions& options) {
+                const MeshReadOptions& options, std::vector<std::string>* warnings) {
     try {
         GltfFile file(bytes, name, read_beside);
-        return GltfBuilder(file, name, options).build();
+        GltfBuilder builder(file, name, options);
+        Mesh mesh = builder.build();
+        if (warnings) std::ranges::move(builder.list_warnings(), std::back_inserter(*warnings));
+        return mesh;
     } catch (const Error& error) {
         if (!error.hint().empty()) throw;
         throw Error(error.kind(), {error.message(), error.where(), kDamagedHint});

@@ -1,4 +1,6 @@
-// load_mesh: the kind of file decides who reads it.
+// The kind of file decides who reads it.
+#include "io/mesh/mesh_reader.h"
+
 #include <algorithm>
 #include <array>
 
@@ -20,7 +22,8 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kMeshExtensions = {".obj", ".ply", ".gltf", ".glb", ".fbx"};
 
-Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
+Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options,
+               std::vector<std::string>& warnings) {
     const std::string extension = get_extension(file), name = file.string();
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     if (!options.animation.empty() && !is_gltf)
@@ -36,7 +39,7 @@ Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options
             require_file(other);
             return read_file_bytes(other);
         };
-        return parse_gltf(read_file_bytes(file), name, read_beside, options);
+        return parse_gltf(read_file_bytes(file), name, read_beside, options, &warnings);
     }
     if (options.uv_set != 0)
         throw Error(ErrorKind::bad_input, {fmt::format("has no uv set {}", options.uv_set), name,
@@ -53,6 +56,12 @@ bool is_mesh_file(const std::filesystem::path& file) {
 }
 
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
+    std::vector<std::string> untold; // the caller asks for the mesh alone
+    return read_mesh_file(file, options, untold);
+}
+
+Mesh read_mesh_file(const std::filesystem::path& file, const MeshReadOptions& options,
+                    std::vector<std::string>& warnings) {
     require_file(file);
     refuse_foreign_file(file);
     if (!is_mesh_file(file)) {
@@ -60,7 +69,7 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
         throw Error(ErrorKind::bad_input, {fmt::format("unknown kind of mesh '{}'", extension), file.string(),
                                            suggest_word(extension, kMeshExtensions)});
     }
-    Mesh mesh = read_mesh(file, options);
+    Mesh mesh = read_mesh(file, options, warnings);
     mesh.name = file.stem().string();
     mesh.source = file.string();
     if (mesh.face_sizes.empty())

@@ -51,7 +51,7 @@ class AssetCache {
     }
 
     /// Another reading of the scene begins: it is warned of all again.
-    void begin() { single_tiles_.clear(), warnings_.clear(); }
+    void begin() { single_tiles_.clear(), told_of_meshes_.clear(), warnings_.clear(); }
     /// What is loaded from now on belongs to a frame; names that name_blend() made are known no more.
     void set_frame(int64_t frame) { frame_ = frame, sequences_.clear(); }
     /// Makes name_blend(files), and the name of one alone, stand for these files of a sequence.
@@ -81,6 +81,8 @@ class AssetCache {
 
     const SequenceFiles* find_blend(const std::string& file) const;
     std::vector<MapTile> load_blend(const SequenceFiles& files);
+    /// Each warning of a mesh is told once.
+    Mesh read_polygons(const std::string& file, const MeshReadOptions& options);
     std::shared_ptr<const Mesh> load_kept(const std::string& file, const MeshReadOptions& options,
                                           int64_t frame);
 
@@ -108,6 +110,7 @@ class AssetCache {
     int64_t frame_ = 1;
     bool keeps_meshes_ = false;
     std::set<std::string> single_tiles_; ///< names that were looked at
+    std::set<std::string> told_of_meshes_;
     std::vector<std::string> warnings_;
 };
 

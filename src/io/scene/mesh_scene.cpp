@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/mesh/mesh_reader.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/displacement_reader.h"
 #include "io/scene/frame_scene.h"
@@ -107,11 +108,11 @@ Mesh make_map_plane() {
 } // namespace
 
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
-    Scene scene = make_clay_scene(load_mesh(mesh, {.reader = options.reader}));
+    AssetCache assets("");
+    Scene scene = make_clay_scene(read_mesh_file(mesh, {.reader = options.reader}, assets.warnings()));
     Subdivision& subdivision = scene.meshes.front().subdivision;
     if (options.subdivision) subdivision.scheme = parse_word<SubdivisionScheme>(*options.subdivision);
     if (options.subdivision_level) subdivision.level = *options.subdivision_level;
-    AssetCache assets("");
     if (!options.displacement_map.empty()) add_map(scene, options, assets);
     const Vec3f view = place_camera(scene);
     if (options.environment.empty()) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "io/mesh/mesh_reader.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/blend.h"
 #include "relief/error.h"
@@ -64,12 +65,20 @@ std::vector<MapTile> AssetCache::load_blend(const SequenceFiles& files) {
     return tiles;
 }
 
+Mesh AssetCache::read_polygons(const std::string& file, const MeshReadOptions& options) {
+    std::vector<std::string> noticed;
+    Mesh mesh = read_mesh_file(resolve(file), options, noticed);
+    for (std::string& warning : noticed)
+        if (told_of_meshes_.insert(warning).second) warnings_.push_back(std::move(warning));
+    return mesh;
+}
+
 std::shared_ptr<const Mesh> AssetCache::load_kept(const std::string& file, const MeshReadOptions& options,
                                                   int64_t frame) {
     Kept<Mesh>& kept = meshes_[make_key(file, options)];
     kept.frame = frame;
     if (!kept.value) {
-        auto mesh = std::make_shared<const Mesh>(load_mesh(resolve(file), options));
+        auto mesh = std::make_shared<const Mesh>(read_polygons(file, options));
         validate_mesh(*mesh);
         kept.value = std::move(mesh);
     }
@@ -85,7 +94,7 @@ Mesh AssetCache::load_polygons(const std::string& file, const MeshReadOptions& o
     const auto known = meshes_.find(make_key(file, options));
     const bool is_kept = known != meshes_.end() && known->second.value;
     const auto sequence = sequences_.find(file);
-    if (sequence == sequences_.end() || !(keeps_meshes_ || is_kept)) return load_mesh(resolve(file), options);
+    if (sequence == sequences_.end() || !(keeps_meshes_ || is_kept)) return read_polygons(file, options);
     return *load_kept(file, options, sequence->second.first_number);
 }
 
