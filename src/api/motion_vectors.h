@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/engine.h"
+#include "formulas/camera.h"
 #include "prepare/prepared_scene.h"
 
 namespace relief {
@@ -11,7 +12,7 @@ namespace relief {
 /// What the middles of the pixels of a window see at the time of the picture, and where it is at others.
 class MotionVectors {
   public:
-    /// By an engine of the scene as it is then, pinhole rays.
+    /// By an engine of the scene as it is then, pinhole rays, some rows at a time: it keeps 16 bytes a pixel.
     MotionVectors(const Engine& engine, const PreparedScene& scene, const Window& window);
 
     /// Where it is on the picture of the scene at another time, pixels; NaN: that scene has it no longer, or
@@ -19,8 +20,17 @@ class MotionVectors {
     std::vector<Vec2f> find_places(const PreparedScene& scene) const;
 
   private:
-    std::vector<Ray> rays_;
-    std::vector<RayHit> hits_;
+    /// Where a ray ends; kNoIndex: nowhere.
+    struct Place {
+        uint32_t object = kNoIndex, patch = kNoIndex;
+        Vec2f uv{};
+    };
+
+    Vec3f find_direction(size_t pixel) const;
+
+    Window window_;
+    scalar::CameraFrame camera_; ///< at the time of the picture
+    std::vector<Place> seen_;    ///< row by row
 };
 
 } // namespace relief

@@ -185,9 +185,14 @@ void Film::allocate_sums() {
         matte_layers += is_matte(kind.source) ? 1 : 0;
     }
     const size_t pixels = size_t(window_.x1 - window_.x0) * size_t(window_.y1 - window_.y0);
+    // While motions are found: where the ray of a pixel ends (16 bytes), and two places on the picture.
+    constexpr size_t kMotionBytes = 16 + 2 * sizeof(Vec2f);
+    const bool has_motions = std::ranges::any_of(
+        layers_, [](const Layer& layer) { return kLayerKinds[layer.kind].source == LayerSource::motion; });
     // Counts, hit counts, depths and ids are 4 bytes each, as are the channels of the resolved image.
-    require_memory(double(pixels),
-                   stride_ * sizeof(double) + (4 + channels) * 4 + matte_layers * MatteCounts::kPixelBytes);
+    require_memory(double(pixels), stride_ * sizeof(double) + (4 + channels) * 4 +
+                                       matte_layers * MatteCounts::kPixelBytes +
+                                       (has_motions ? kMotionBytes : 0));
     sums_.resize(pixels * stride_);
     counts_.resize(pixels);
     if (needs_hit_counts) hit_counts_.resize(pixels);

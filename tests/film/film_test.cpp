@@ -91,6 +91,16 @@ TEST(Film, refuses_a_picture_that_memory_cannot_hold_and_says_what_it_needs) {
     EXPECT_NO_THROW(Film(1 << 25, 1 << 25, {0, 0, 8, 8}, {}));
 }
 
+TEST(Film, counts_what_it_takes_to_find_motions_as_memory_of_their_layer) {
+    try {
+        const Film film(1 << 25, 1 << 25, {}, {"motion"});
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        const std::string bytes = std::to_string((uint64_t(1) << 50) * (64 + 8 + 32));
+        EXPECT_NE(std::string(error.what()).find(bytes + " bytes"), std::string::npos) << error.what();
+    }
+}
+
 TEST(Film, averages_colour_and_describes_the_nearest_hit) {
     Film film = make_whole_film(8, 6, {2, 1, 6, 5});
     film.add_sample(3, 2, make_hit(1, 10, 7));
