@@ -14,6 +14,7 @@ from ._arrays import Array, as_texels, is_array, to_numpy
 from ._errors import Error
 from ._mesh import Mesh
 from ._parts import Camera, Displacement, Environment, Light, Material
+from ._save import is_moving, put_motion
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -172,7 +173,19 @@ class Scene:
         return scene
 
     def save(self, folder: Path) -> None:
-        """Writes scene.json, meshes (OBJ) and maps (EXR) into a folder."""
+        """Writes scene.json, meshes (OBJ) and maps (EXR) into a folder. Of a scene that moves, scene.json has its keys, and the
+        whole names of its numbered files and animated meshes, which stay where they are."""
+        self._save_still(folder)
+        scene = json.loads(self._collect()[0])
+        if not is_moving(scene):
+            return
+        file = os.path.join(os.fspath(folder), "scene.json")
+        with open(file, encoding="utf-8") as stream:
+            saved = json.loads(strip_comments(stream.read()))
+        put_motion(file, saved, scene, os.fspath(self.folder))
+
+    def _save_still(self, folder: Path) -> None:
+        """As it is at its first frame."""
         self._parse().save(os.fspath(folder))
 
     def validate(self) -> list[str]:

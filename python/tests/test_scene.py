@@ -29,6 +29,32 @@ class SceneTest(unittest.TestCase):
         np.testing.assert_array_equal(self.render(scene), self.render(saved))
         np.testing.assert_array_equal(self.render(scene), self.render(self.folder / "scene.json"))
 
+    def test_a_scene_that_moves_is_saved_with_its_motion(self):
+        scene = scenes.make_scene()
+        scene.camera = relief.Camera(from_={"keys": [[1, [0, 0, 4]], [3, [0, 0, 8]]]}, to=(0, 0, 0))
+        scene.objects[0]["transform"] = {"translate": {"keys": [[1, [0, 0, 0]], [3, [1, 0, 0]]]}}
+        scene.materials["clay"] = relief.Material(roughness={"keys": [[1, 0.9], [3, 0.1]]})
+        scene.lights = [relief.Light(type="sun", direction=(0, -1, -1), strength={"keys": [[1, 1], [3, 4]]})]
+        scene.render = {"frames": "1-3", "fps": 25}
+        scene.save(self.folder / "keys")
+        for number in (1, 2, 3):
+            height = np.full((4, 4), number / 8, np.float32)
+            relief.Scene.from_mesh(scenes.make_plane(), height).save(self.folder / str(number))
+            os.rename(next((self.folder / str(number)).glob("maps/*.exr")), self.folder / f"height.{number:04}.exr")
+        numbered = scenes.make_scene()
+        numbered.folder = str(self.folder)
+        numbered.displacements["numbered"] = relief.Displacement("height.####.exr", type="height", scale=2)
+        numbered.objects[0]["displacement"] = "numbered"
+        numbered.save(self.folder / "files")
+        for moving, name in ((scene, "keys"), (numbered, "files")):
+            file = self.folder / name / "scene.json"
+            pictures = [self.render(moving, frame=frame) for frame in (1, 2, 3)]
+            self.assertFalse(np.array_equal(pictures[0], pictures[2]))
+            for frame, picture in zip((1, 2, 3), pictures):
+                np.testing.assert_array_equal(self.render(file, frame=frame), picture)
+        root = json.loads((self.folder / "keys" / "scene.json").read_text())
+        self.assertEqual((root["render"]["frames"], root["render"]["fps"]), ("1-3", 25))
+
     def test_comments_and_files_of_the_scene_are_read(self):
         scenes.make_scene().save(self.folder)
         file = self.folder / "scene.json"

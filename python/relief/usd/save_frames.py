@@ -1,4 +1,4 @@
-"""Scene files with keys: Scene.save() writes a scene as it is at its first frame."""
+"""Scene files with keys, and the numbered files of moving meshes beside them."""
 from __future__ import annotations
 
 import json
@@ -13,7 +13,7 @@ SINGLE = "_texture", "file"  # ends of keys whose files Scene.save() has written
 
 def save_frames(scene: relief.Scene, folder: str) -> None:
     """Writes scene.json, meshes and maps as Scene.save() does, with all keys and the numbered files of moving meshes."""
-    scene.save(folder)
+    scene._save_still(folder)
     path = os.path.join(folder, "scene.json")
     with open(path, encoding="utf-8") as file:
         root = json.loads(strip_comments(file.read()))

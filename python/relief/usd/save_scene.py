@@ -78,7 +78,7 @@ def read_scene_file(folder: str) -> dict:
 
 def save_scene(scene: relief.Scene, path: str, report: list | None) -> None:
     writer = Writer(path)
-    scene.save(writer.folder)
+    scene._save_still(writer.folder)
     keys = read_scene_file(writer.folder)
     materials = MaterialWriter(writer)
     for name, material in keys.get("materials", {}).items():

@@ -1,0 +1,71 @@
+"""Folders of scenes that move: the scene at its first frame, with keys and the names of numbered files put back."""
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Mapping
+
+NUMBER = "####"
+OF_PICTURE = ("frames", "fps")  # which a scene in memory does not keep
+# Keys of materials that stand for the same under other names, of which a file has one.
+OTHER_NAMES = (({"roughness"}, {"specular_roughness"}), ({"metallic"}, {"base_metalness"}), ({"ior"}, {"specular_ior"}),
+               ({"opacity"}, {"geometry_opacity"}), ({"normal_texture"}, {"geometry_normal"}),
+               ({"emission"}, {"emission_luminance", "emission_color"}))
+
+
+def is_moving(value: Any) -> bool:
+    """Whether it has keys or numbered files somewhere inside."""
+    if isinstance(value, Mapping):
+        return "keys" in value or "animation" in value or any(is_moving(part) for part in value.values())
+    if isinstance(value, list):
+        return any(is_moving(part) for part in value)
+    return isinstance(value, str) and NUMBER in value
+
+
+def put_motion(file: str, saved: dict[str, Any], scene: Mapping[str, Any], folder: str) -> None:
+    """Writes the scene file anew. saved: what it holds, at one frame. scene: all of the scene, with names of files that are
+    relative to `folder`."""
+    for key in OF_PICTURE:
+        if key in scene.get("render", {}):
+            saved.setdefault("render", {})[key] = scene["render"][key]
+    if is_moving(scene.get("camera")) or "shutter" in scene.get("camera", {}):
+        saved["camera"] = scene["camera"]
+    put_values(saved.get("environment", {}), scene.get("environment", {}), folder)
+    for section in ("materials", "displacements", "meshes"):
+        for name, part in scene.get(section, {}).items():
+            saved_part = saved.get(section, {}).get(name)
+            if saved_part is None:
+                continue
+            if is_of_files(part):
+                saved[section][name] = resolve(part, folder)
+            else:
+                put_values(saved_part, part, folder)
+    for section in ("objects", "lights"):
+        for saved_part, part in zip(saved.get(section, []), scene.get(section, [])):
+            put_values(saved_part, part, folder)
+    with open(file, "w", encoding="utf-8") as stream:
+        json.dump(saved, stream, indent=2)
+
+
+def is_of_files(part: Any) -> bool:
+    """Whether a map or mesh is another file at each frame: all that is said of it is said of these."""
+    return "animation" in part or NUMBER in str(part.get("file", ""))
+
+
+def put_values(saved: dict[str, Any], part: Mapping[str, Any], folder: str) -> None:
+    moving = {key for key, value in part.items() if is_moving(value)}
+    for pair in OTHER_NAMES:
+        for names, others in (pair, pair[::-1]):
+            if moving & names:
+                moving |= names & part.keys()
+                for other in others & saved.keys():
+                    del saved[other]
+    saved.update({key: resolve(part[key], folder, key) for key in part if key in moving})
+
+
+def resolve(value: Any, folder: str, key: str = "") -> Any:
+    """With whole names of files."""
+    if isinstance(value, Mapping):
+        return {inner: resolve(part, folder, inner) for inner, part in value.items()}
+    is_file = isinstance(value, str) and (key == "file" or key.endswith("_texture"))
+    return os.path.join(os.path.abspath(folder), value) if is_file else value
