@@ -36,6 +36,8 @@ def check_plan(relief, folder):
     expect(plan(relief, folder, "x", "--noise", "0.1", code=2).stderr, "unknown option '--noise'")
     assert not (folder / "x").exists()
     expect(run(relief, "farm", "plam", code=2).stderr, "'plan'")
+    expect(run(relief, "farm", "--tiles", code=2).stderr, "unknown option '--tiles'", "relief farm --help")
+    expect(run(relief, "farm", code=2).stderr, "relief farm: no command given")
     expect(run(relief, "farm", "work", folder / "job", "--task", "6", code=2).stderr, "from 0 to 5")
     expect(run(relief, "farm", "submit", folder / "job", "--partition", "a", code=2).stderr, "--to slurm")
 
