@@ -70,14 +70,9 @@ double get_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void print_warnings(std::span<const std::string> warnings, bool is_mesh) {
-    for (const std::string& warning : warnings)
-        fmt::print(stderr, "relief: warning: {}\n", name_setting(warning, is_mesh));
-}
-
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const PendingTimes& waiting, RenderResult& result,
-                   size_t printed_warnings) {
+                   ToldWarnings& told) {
     Statistics& statistics = result.statistics;
     if (result.whole_samples == 0) {
         fmt::print(stderr, "relief: interrupted before every pixel had a sample; no picture was written\n");
@@ -93,9 +88,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     statistics.write_s = get_seconds() - write_start;
     statistics.total_s = get_seconds() - waiting.start;
     if (!options.progress.is_quiet)
-        print_warnings(
-            std::span(statistics.warnings).subspan(std::min(printed_warnings, statistics.warnings.size())),
-            true);
+        print_warnings(told.take_new(statistics.warnings), is_mesh_file(options.input));
     if (options.is_verbose) print_summary(result, settings);
     fmt::print("wrote {}\n", saved.file.string());
     std::fflush(stdout); // the sender of edits waits for it
@@ -111,15 +104,15 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
 }
 
 int show_next(const RenderOptions& options, const RenderSettings& settings, const RenderPicture& render,
-              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings,
+              const std::filesystem::path& output, const PendingTimes& waiting, ToldWarnings& told,
               const std::string& step) {
     RenderResult result;
     {
-        RenderWatcher watcher(options, printed_warnings, step);
+        RenderWatcher watcher(options, told, step);
         result = render(&watcher);
         if (watcher.is_refused()) return kExitWarnings;
     }
-    return finish_picture(options, settings, output, waiting, result, printed_warnings);
+    return finish_picture(options, settings, output, waiting, result, told);
 }
 
 } // namespace relief::cli

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <string>
 
 #include "relief/session.h"
 #include "render_options.h"
+#include "render_warnings.h"
 
 namespace relief::cli {
 
@@ -20,21 +20,18 @@ struct PendingTimes {
     double start, load_s;
 };
 
-/// `is_mesh`: settings are named as options.
-void print_warnings(std::span<const std::string> warnings, bool is_mesh);
-
-/// Writes a picture and what goes with it; returns the exit code. `printed_warnings`: how many of the
-/// warnings were printed before the render.
+/// Writes a picture and what goes with it; returns the exit code. Warnings that were not told yet are
+/// printed.
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    const std::filesystem::path& output, const PendingTimes& waiting, RenderResult& result,
-                   size_t printed_warnings);
+                   ToldWarnings& told);
 
 using RenderPicture = std::function<RenderResult(RenderObserver* observer)>;
 
-/// Renders and finishes one of several pictures; `printed_warnings` counts on. `step`: which of them it is,
-/// for its progress.
+/// Renders and finishes one of several pictures; `step`: which of them it is, for its
+/// progress.
 int show_next(const RenderOptions& options, const RenderSettings& settings, const RenderPicture& render,
-              const std::filesystem::path& output, const PendingTimes& waiting, size_t& printed_warnings,
+              const std::filesystem::path& output, const PendingTimes& waiting, ToldWarnings& told,
               const std::string& step = {});
 
 } // namespace relief::cli

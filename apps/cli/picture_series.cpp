@@ -6,19 +6,11 @@
 
 namespace relief::cli {
 
-void PictureSeries::forget_told(std::vector<std::string>& warnings) {
-    const auto is_told = [&](const std::string& warning) { return !told_.insert(warning).second; };
-    if (!options_.is_strict) std::erase_if(warnings, is_told);
-    printed_warnings_ = 0;
-}
-
 void PictureSeries::hold(Scene scene, const RenderSettings& settings) {
-    forget_told(scene.warnings);
     scene_ = std::move(scene), settings_ = settings;
 }
 
 void PictureSeries::hold(SceneUpdate update, const RenderSettings& settings) {
-    if (update.scene) forget_told(update.scene->warnings);
     update_ = std::move(update), settings_ = settings;
 }
 
@@ -30,7 +22,7 @@ int PictureSeries::show_alone(const Shot::View& view, const std::filesystem::pat
     const auto render_alone = [&](RenderObserver* observer) {
         return render(std::move(scene), settings_, observer);
     };
-    return show_next(options_, settings_, render_alone, output, waiting, printed_warnings_, step);
+    return show_next(options_, settings_, render_alone, output, waiting, told_, step);
 }
 
 void PictureSeries::prepare(const Shot::View& view, int frame) {
@@ -58,7 +50,7 @@ int PictureSeries::show(const Shot::View& view, int frame, const std::filesystem
         const auto update = [this](double time) { return shot_->update(time); };
         return session_->render_moving(frame, update, observer);
     };
-    return show_next(options_, settings_, render_next, output, waiting, printed_warnings_, step);
+    return show_next(options_, settings_, render_next, output, waiting, told_, step);
 }
 
 } // namespace relief::cli

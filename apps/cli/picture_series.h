@@ -2,12 +2,12 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <string>
 
 #include "finish_picture.h"
 #include "relief/scene.h"
 #include "relief/shot.h"
+#include "render_warnings.h"
 
 namespace relief::cli {
 
@@ -34,7 +34,6 @@ class PictureSeries {
              const PendingTimes& waiting);
 
   private:
-    void forget_told(std::vector<std::string>& warnings);
     int show_alone(const Shot::View& view, const std::filesystem::path& output, const std::string& step,
                    const PendingTimes& waiting);
     void prepare(const Shot::View& view, int frame);
@@ -45,8 +44,7 @@ class PictureSeries {
     std::optional<Scene> scene_;        ///< not prepared yet, or tessellated
     std::optional<SceneUpdate> update_; ///< not prepared yet
     std::optional<Session> session_;
-    size_t printed_warnings_ = 0; ///< of the scene
-    std::set<std::string> told_;
+    ToldWarnings told_;
 };
 
 } // namespace relief::cli

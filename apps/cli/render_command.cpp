@@ -70,10 +70,10 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
     catch_interrupts();
     const std::filesystem::path& output = options.output;
     RenderResult result;
-    size_t printed_warnings = 0;
+    ToldWarnings told;
     FilmKeeper keeper(options.checkpoint, output);
     {
-        RenderWatcher watcher(options, printed_warnings); // its end prints the last line
+        RenderWatcher watcher(options, told); // its end prints the last line
         result = source.shot ? render_shot(*source.shot, source.frame, std::move(scene), settings, &watcher,
                                            keeper.checkpoints())
                              : render(std::move(scene), settings, &watcher, keeper.checkpoints());
@@ -81,7 +81,7 @@ int render_picture(const RenderOptions& options, const RenderSettings& settings,
     }
     if (!options.checkpoint.resumed.empty() && result.is_complete)
         tell_of_earlier_samples(result, settings.image);
-    const int exit_code = finish_picture(options, settings, output, waiting, result, printed_warnings);
+    const int exit_code = finish_picture(options, settings, output, waiting, result, told);
     return exit_code == kExitDone && keeper.has_failed() ? int(ErrorKind::failed) : exit_code;
 }
 

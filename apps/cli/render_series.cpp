@@ -81,12 +81,12 @@ int render_edits(const RenderOptions& options, const RenderSettings& settings, S
         scene.displacements.size() == 1 ? scene.displacements[0].name : std::string();
     EditStream edits(options.edits == "-" ? std::cin : file,
                      options.edits == "-" ? "standard input" : options.edits, only_displacement);
-    size_t printed_warnings = 0;
+    ToldWarnings told;
     Session session(std::move(scene), settings);
     if (options.edits != "-") check_edits(options.edits, only_displacement, session, files);
     const auto show = [&](const std::filesystem::path& output) {
         const auto render_next = [&](RenderObserver* observer) { return session.render(observer); };
-        return show_next(options, settings, render_next, output, waiting, printed_warnings);
+        return show_next(options, settings, render_next, output, waiting, told);
     };
     int exit_code = show(options.output);
     bool is_pending = false; // edits not shown in a picture yet

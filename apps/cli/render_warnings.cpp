@@ -59,7 +59,19 @@ std::string name_setting(std::string warning, bool is_mesh) {
     return is_mesh ? name_options(std::move(warning)) : name_keys(std::move(warning));
 }
 
-RenderWatcher::RenderWatcher(const RenderOptions& options, size_t& told, std::string step)
+void print_warnings(const std::vector<std::string>& warnings, bool is_mesh) {
+    for (const std::string& warning : warnings)
+        fmt::print(stderr, "relief: warning: {}\n", name_setting(warning, is_mesh));
+}
+
+std::vector<std::string> ToldWarnings::take_new(const std::vector<std::string>& warnings) {
+    std::vector<std::string> fresh;
+    for (const std::string& warning : warnings)
+        if (told_.insert(warning).second) fresh.push_back(warning);
+    return fresh;
+}
+
+RenderWatcher::RenderWatcher(const RenderOptions& options, ToldWarnings& told, std::string step)
     : printer_(options.progress),
       options_(options),
       told_(told),
@@ -67,12 +79,11 @@ RenderWatcher::RenderWatcher(const RenderOptions& options, size_t& told, std::st
       preparing_(printer_, describe_preparation(step_, options.settings.device.engine)) {}
 
 void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
-    const bool is_mesh = is_mesh_file(options_.input);
+    const std::vector<std::string> fresh = told_.take_new(warnings);
     std::unique_lock<std::mutex> lock;
-    if (told_ < warnings.size()) lock = preparing_.interject();
-    for (; told_ < warnings.size(); ++told_)
-        if (!options_.progress.is_quiet || options_.is_strict)
-            fmt::print(stderr, "relief: warning: {}\n", name_setting(warnings[told_], is_mesh));
+    if (!fresh.empty()) lock = preparing_.interject();
+    if (!options_.progress.is_quiet || options_.is_strict)
+        print_warnings(fresh, is_mesh_file(options_.input));
     is_refused_ = options_.is_strict && !warnings.empty();
     if (is_refused_) fmt::print(stderr, "relief: nothing is rendered with warnings under --strict\n");
 }

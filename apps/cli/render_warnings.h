@@ -2,6 +2,7 @@
 // file.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,24 @@ void add_assumption_warnings(Scene& scene, const RenderOptions& options);
 /// "displacement.axes = t,n,b" as the user writes it: an option with a mesh, a key in a scene file.
 std::string name_setting(std::string warning, bool is_mesh);
 
+/// In lines of their own, with settings in the words of `name_setting`.
+void print_warnings(const std::vector<std::string>& warnings, bool is_mesh);
+
+/// Which warnings were told, by all pictures of a command.
+class ToldWarnings {
+  public:
+    /// Those that were not told yet; from now on they are.
+    std::vector<std::string> take_new(const std::vector<std::string>& warnings);
+
+  private:
+    std::set<std::string> told_;
+};
+
 /// Prints progress and warnings; an interrupt, and under --strict a warning, cancels the render.
 class RenderWatcher final : public RenderObserver {
   public:
-    /// `told`: warnings printed before, by other pictures of the same scene; outlives this object. `step`:
-    /// which of several pictures this is; empty: the only one.
-    RenderWatcher(const RenderOptions& options, size_t& told, std::string step = {});
+    /// `told` outlives this object. `step`: which of several pictures this is; empty: the only one.
+    RenderWatcher(const RenderOptions& options, ToldWarnings& told, std::string step = {});
 
     void on_warnings(const std::vector<std::string>& warnings) override;
     void on_progress(const Progress& progress) override;
@@ -36,7 +49,7 @@ class RenderWatcher final : public RenderObserver {
   private:
     ProgressPrinter printer_;
     const RenderOptions& options_;
-    size_t& told_;
+    ToldWarnings& told_;
     std::string step_;
     bool is_refused_ = false;
     WaitNotice preparing_;

@@ -78,8 +78,8 @@ LoadedTask load_task(const FarmTask& task, const RenderOptions& options, Shot& s
 /// Renders; of samples that turn out to be damaged nothing is kept.
 RenderResult render_task(const FarmJob& job, const FarmTask& task, const RenderOptions& options, Shot& shot,
                          Checkpoints& checkpoints) {
-    size_t printed_warnings = 0;
-    RenderWatcher watcher(options, printed_warnings, describe_task(job, task));
+    ToldWarnings told;
+    RenderWatcher watcher(options, told, describe_task(job, task));
     LoadedTask loaded = load_task(task, options, shot);
     const std::optional<FileIdentity> earlier = identify_file(get_partial_film_file(job, task.index));
     checkpoints.parts = find_earlier_samples(job, task, loaded.settings);

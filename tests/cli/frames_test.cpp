@@ -124,6 +124,24 @@ TEST_F(FramesTest, that_lack_a_file_are_told_before_the_first) {
     EXPECT_FALSE(exists("s.0001.exr"));
 }
 
+TEST_F(FramesTest, tell_each_warning_once_and_in_the_words_of_the_scene_file) {
+    write("tilted.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 2 2\nvt 0 2\n"
+                        "f 1/1 2/2 3/3 4/4\n"); // uvs outside of the image
+    write("shot.json", R"({"render": {"width": 8, "height": 8, "spp": 1, "frames": "1-3"},
+      "camera": {"from": {"keys": [[1, [0, 0, 5]], [3, [2, 1, 4]]]}}, "environment": {"color": [1, 1, 1]},
+      "displacements": {"bump": {"file": "bump.exr", "scale": {"keys": [[1, 0.1], [3, 0.3]]}}},
+      "meshes": {"plane": {"file": "tilted.obj"}}, "objects": [{"mesh": "plane", "displacement": "bump"}]})");
+    const CommandResult result = run({"render", "shot.json", "-o", "s.exr"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const size_t first = result.errors.find("leave the unit square");
+    ASSERT_NE(first, std::string::npos) << result.errors;
+    EXPECT_EQ(result.errors.find("leave the unit square", first + 1), std::string::npos) << result.errors;
+    EXPECT_NE(result.errors.find("\"wrap\": \"repeat\""), std::string::npos) << result.errors;
+    EXPECT_EQ(result.errors.find("--wrap"), std::string::npos) << result.errors;
+    EXPECT_EQ(run({"render", "shot.json", "-o", "t.exr", "--strict"}).exit_code, 6);
+    EXPECT_FALSE(exists("t.0001.exr"));
+}
+
 TEST_F(FramesTest, go_with_no_options_of_one_picture) {
     const auto expect_refused = [&](const std::vector<std::string>& more) {
         std::vector<std::string> command = {"render", "shot.json", "-o", "no.exr"};
