@@ -107,7 +107,13 @@ void refuse_extras(const CLI::App& app, const std::string& command) {
         refuse_option(extra.substr(0, equals), equals == std::string::npos ? next : extra.substr(equals + 1),
                       app, help);
     }
-    throw Error(ErrorKind::usage, {fmt::format("unexpected argument '{}'", extras.front()), "", help});
+    const std::string& extra = extras.front();
+    constexpr std::array<std::string_view, 5> kMaps = {".exr", ".tif", ".tiff", ".png", ".hdr"};
+    const bool is_map =
+        std::ranges::any_of(kMaps, [&](std::string_view end) { return extra.ends_with(end); }) &&
+        app.get_option_no_throw("--vdm") != nullptr;
+    throw Error(ErrorKind::usage, {fmt::format("unexpected argument '{}'", extra), "",
+                                   is_map ? fmt::format("a map goes with its mesh: --vdm {}", extra) : help});
 }
 
 void refuse_empty_names(const CLI::App& app) {

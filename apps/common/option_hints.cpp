@@ -221,6 +221,11 @@ constexpr Note kNotes[] = {
     {"input", "--spp", "scenes and meshes stand without an option, in any place"},
     {"i", "--spp", "scenes and meshes stand without an option, in any place"},
     {"scene", "--spp", "scenes and meshes stand without an option, in any place"},
+    {"noise", "--passes",
+     "tasks of a farm have a fixed number of samples: where they end would depend on the cut"},
+    {"time-limit", "--passes",
+     "tasks of a farm have a fixed number of samples: what a machine finds time for is no picture of the "
+     "job"},
     {"units", "--spp", "lengths are those of the file: --vdm-scale F fits the map to the mesh"},
     {"unit", "--spp", "lengths are those of the file: --vdm-scale F fits the map to the mesh"},
 };

@@ -140,6 +140,13 @@ fs::path get_attempt_file(const FarmJob& job, const Attempt& attempt) {
     return get_state_folder(job, attempt.task) / name_attempt(attempt);
 }
 
+std::string read_reason(const FarmJob& job, const Attempt& attempt) {
+    std::ifstream stream(get_attempt_file(job, attempt));
+    std::string reason;
+    std::getline(stream, reason);
+    return reason;
+}
+
 std::vector<Attempt> list_attempts(const FarmJob& job, uint32_t task) {
     std::vector<Attempt> attempts;
     visit_names(get_state_folder(job, task), [&](const char* name) {

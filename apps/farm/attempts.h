@@ -46,6 +46,9 @@ bool is_process_gone(const Attempt& attempt);
 std::filesystem::path get_state_folder(const FarmJob& job, uint32_t task);
 std::filesystem::path get_attempt_file(const FarmJob& job, const Attempt& attempt);
 
+/// Why an attempt failed, the first line of its file; may be empty.
+std::string read_reason(const FarmJob& job, const Attempt& attempt);
+
 /// All attempts at one task.
 std::vector<Attempt> list_attempts(const FarmJob& job, uint32_t task);
 

@@ -135,9 +135,12 @@ class LocalFarm {
         if (exit_code_ == kExitDone) exit_code_ = code;
         if (failed_ > kMostTold) return; // `status` tells of all
         printer_.end_line();
-        fmt::print(stderr, "relief: warning: task {} failed with exit code {}: {}; its log: {}\n",
-                   worker.task, code, describe_task(job_, find_task(job_, worker.task)),
-                   get_log_file(job_, worker.task).string());
+        std::string reason;
+        for (const Attempt& attempt : list_attempts(job_, worker.task))
+            if (attempt.state == AttemptState::failed) reason = read_reason(job_, attempt);
+        fmt::print(stderr, "relief: warning: task {} ({}) failed with exit code {}{}{}; its log: {}\n",
+                   worker.task, describe_task(job_, find_task(job_, worker.task)), code,
+                   reason.empty() ? "" : ": ", reason, get_log_file(job_, worker.task).string());
     }
 
     void tell() {

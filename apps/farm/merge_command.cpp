@@ -45,9 +45,10 @@ int merge_and_report(const FarmJob& job, const MergeOptions& options) {
         ErrorKind::bad_input,
         {fmt::format("{} of {} frames are not whole", report.missing.size(), job.frames.size()),
          job.folder.string(),
-         fmt::format("relief farm submit {0} renders what is missing; relief farm retry {0} puts up again "
-                     "what failed",
-                     job.folder.string())});
+         fmt::format(
+             "relief farm status {0} tells why; relief farm retry {0} puts failed tasks up again, and "
+             "relief farm submit {0} renders what is missing",
+             job.folder.string())});
 }
 
 Command add_farm_merge(CLI::App& verb) {

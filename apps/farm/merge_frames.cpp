@@ -94,10 +94,10 @@ class FrameMerger {
         checkpoints.parts = list_parts(job_, frame_index, settings);
         const std::vector<std::optional<FileIdentity>> films = identify_films(checkpoints.parts);
         const double load_s = get_seconds() - start;
-        size_t printed_warnings = 0;
+        ToldWarnings told;
         RenderResult result;
         try {
-            RenderWatcher watcher(options_, printed_warnings, fmt::format("frame {}", frame));
+            RenderWatcher watcher(options_, told, fmt::format("frame {}", frame));
             result = render_shot(shot_, frame, std::move(scene), settings, &watcher, checkpoints);
             if (watcher.is_refused()) return kExitWarnings;
         } catch (const Error& error) {
@@ -109,7 +109,7 @@ class FrameMerger {
             return std::nullopt;
         }
         return finish_picture(options_, settings, name_frame(job_.pictures, frame), {start, load_s}, result,
-                              printed_warnings);
+                              told);
     }
 
   private:

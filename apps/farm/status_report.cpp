@@ -32,8 +32,7 @@ std::vector<std::string> read_last_lines(const std::filesystem::path& file, size
 
 FailedTask describe_failure(const FarmJob& job, const Attempt& attempt) {
     FailedTask failed{attempt, {}, read_last_lines(get_log_file(job, attempt.task), kMostLogLines)};
-    std::ifstream reason(get_attempt_file(job, attempt));
-    std::getline(reason, failed.reason);
+    failed.reason = read_reason(job, attempt);
     return failed;
 }
 

@@ -31,6 +31,8 @@ constexpr Slip kOptionSlips[] = {
     {"render plane.obj --light left", "sun:-60,30"},
     {"render plane.obj --turntable -o a.png", "--turntable 36"},
     {"render bump.exr --vdm plane.obj", "relief render MESH --vdm MAP"},
+    {"render plane.obj bump.exr", "--vdm bump.exr"},
+    {"farm plan plane.obj --noise 0.1", "fixed number of samples"},
     {"render plane.obj --cpu", "--engine cpu"},
     {"render plane.obj --verbose", "'-v'"},
     {"render plane.obj --quiet", "'-q'"},
