@@ -96,6 +96,8 @@ class Document {
     /// New texels from its file, of the same size: no change that needs another session, if it is told of the
     /// edit. False where the size is another one.
     bool replace_tile(size_t displacement, int udim, Texture texels);
+    /// Makes replace_tile() a change for sessions that take no edits.
+    void note_replaced_tiles() { ++version_; }
 
     /// Writes a scene file with the picture of these settings, and painted maps beside it, `STEM_NAME.exr`,
     /// or `STEM_NAME-2.exr` where that is a file which this document did not write. Returns all files

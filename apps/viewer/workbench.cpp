@@ -184,6 +184,12 @@ void Workbench::forget_explanation() {
     explained_pixel_.reset();
 }
 
+SessionUse Workbench::choose_use() const {
+    if (tool_ == Tool::paint || (painter_ && (painter_->is_active() || painter_->has_strokes())))
+        return SessionUse::edits;
+    return shot_ ? SessionUse::scenes : SessionUse::views;
+}
+
 /// Edits that were made while the request waits are in the snapshot as well; making them again changes
 /// nothing.
 void Workbench::request(std::vector<MapEdit> edits) {
@@ -201,9 +207,7 @@ void Workbench::request(std::vector<MapEdit> edits) {
     request.camera = camera_.get();
     request.motion = motion_;
     request.shot = shot_ ? scene_count_ : 0;
-    request.use = tool_ == Tool::paint || (painter_ && painter_->has_strokes()) ? SessionUse::edits
-                  : shot_                                                       ? SessionUse::scenes
-                                                                                : SessionUse::views;
+    request.use = choose_use();
     const uint64_t version = loop_.show(request, std::move(edits));
     if (std::exchange(has_changed_, false)) wanted_version_ = version;
 }

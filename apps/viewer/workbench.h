@@ -198,6 +198,7 @@ class Workbench {
     void note_message();
     void take_picture();
     void take_denoised();
+    SessionUse choose_use() const;
     void request(std::vector<MapEdit> edits = {});
     void set_motion(Motion motion);
     void send(std::vector<MapEdit> edits);

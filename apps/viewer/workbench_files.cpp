@@ -33,6 +33,14 @@ std::filesystem::path name_pattern(const std::filesystem::path& file) {
     return pattern.empty() ? file : pattern;
 }
 
+/// Another frame, which came meanwhile, may name another one there.
+bool is_file_of(const Scene& scene, size_t displacement, int udim, const std::string& file) {
+    if (displacement >= scene.displacements.size()) return false;
+    return std::ranges::any_of(scene.displacements[displacement].tiles, [&](const MapTile& tile) {
+        return tile.udim == udim && tile.texture->file == file;
+    });
+}
+
 bool is_environment(const std::filesystem::path& file) { return cli::get_lower_extension(file) == ".hdr"; }
 
 } // namespace
@@ -204,7 +212,8 @@ void Workbench::adopt(Reread reread) {
     }
     std::vector<MapEdit> edits;
     for (RereadMap& map : reread.maps) {
-        const Displacement& displacement = document_->scene().displacements.at(map.displacement);
+        if (!is_file_of(document_->scene(), map.displacement, map.udim, map.texels.file)) continue;
+        const Displacement& displacement = document_->scene().displacements[map.displacement];
         if (document_->has_painted(displacement.name)) {
             message_ =
                 fmt::format("the file of '{}' changed; what was painted on it stays", displacement.name);
@@ -219,7 +228,9 @@ void Workbench::adopt(Reread reread) {
     painter_->forget();
     message_ = "read again: the map changed";
     needs_snapshot_ = true;
-    send(std::move(edits));
+    if (choose_use() != SessionUse::scenes) return send(std::move(edits));
+    document_->note_replaced_tiles(); // the session takes scenes, and no edits
+    set_motion(Motion::moving);
 }
 
 std::filesystem::path Workbench::suggest_file(const char* extension) const {

@@ -61,6 +61,20 @@ class FrameTest : public WorkbenchTest {
     std::vector<float> render_frame(int frame) {
         return render(Shot(folder_ / "shot.json").load(frame), settings_).image.pixels;
     }
+    /// Of the maps that are shown, and waits until it was read again and is seen.
+    void rewrite_map(const std::string& name) {
+        const std::shared_ptr<const Texture> before = map().tiles[0].texture;
+        const std::vector<float> picture = bench_->picture()->image.pixels;
+        Displacement next = map();
+        auto texture = std::make_shared<Texture>(*before);
+        for (uint32_t x = 0; x < 64; ++x) write_texel(*texture, x, 33, {0, 0, 0.4f});
+        next.tiles[0].texture = texture;
+        write_map(next, folder_ / "maps" / name, MapSamples::float32);
+        ASSERT_TRUE(reach([&] { return map().tiles[0].texture != before; })) << bench_->message();
+        ASSERT_TRUE(reach_done()) << bench_->message();
+        EXPECT_EQ(bench_->message(), "read again: the map changed");
+        EXPECT_NE(bench_->picture()->image.pixels, picture);
+    }
     const Displacement& map() const { return bench_->document()->scene().displacements[0]; }
     void paint(float height) { write_texel(bench_->document()->paint_tile(0, 1001), 12, 20, {0, 0, height}); }
     std::shared_ptr<const Texture> painted_texture() {
@@ -231,6 +245,24 @@ TEST_F(FrameTest, a_frame_whose_file_is_missing_leaves_what_is_shown) {
     EXPECT_NE(bench_->message().find("frame 3"), std::string::npos) << bench_->message();
     show(4);
     EXPECT_EQ(bench_->picture()->image.pixels, render_frame(4));
+}
+
+TEST_F(FrameTest, a_map_that_is_rewritten_is_read_again_at_a_frame_with_keys) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    show(3);
+    rewrite_map("bumps.exr");
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
+    show(4);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(4));
+}
+
+TEST_F(FrameTest, a_numbered_map_that_is_rewritten_is_read_again) {
+    open_sequence();
+    show(2);
+    rewrite_map("bumps.0002.exr");
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(2));
+    show(3);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
 }
 
 TEST_F(FrameTest, a_scene_without_keys_has_no_frames) {
