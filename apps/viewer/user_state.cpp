@@ -56,6 +56,7 @@ std::filesystem::path UserState::set_aside(const std::filesystem::path& input, c
         return job.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     });
     const std::filesystem::path file = name_aside(input, map, frame);
+    for (const MapTile& tile : map.tiles) kept_.erase(name_tile(file, tile.udim));
     setting_aside_.push_back(std::async(std::launch::async, [file, map, folder = folder_] {
         std::error_code ignored;
         std::filesystem::create_directories(folder, ignored);

@@ -230,6 +230,7 @@ TEST_F(FrameTest, strokes_on_a_map_of_one_frame_come_back_with_it) {
     EXPECT_FALSE(bench_->document()->has_strokes_aside());
     EXPECT_EQ(read_height(), 0.75f);
     show(4);
+    ASSERT_TRUE(bench_->save(folder_ / "fourth.json"));
     bench_.reset();
     const auto kept = UserState(folder_ / "state").claim_painted(folder_ / "shot.json");
     ASSERT_EQ(kept.size(), 1u);
