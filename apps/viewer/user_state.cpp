@@ -47,24 +47,12 @@ std::filesystem::path find_state_folder() {
     return {};
 }
 
-UserState::~UserState() = default;
-
 std::filesystem::path UserState::set_aside(const std::filesystem::path& input, const Displacement& map,
                                            int frame) {
     if (folder_.empty()) return {};
-    std::erase_if(setting_aside_, [](const std::future<void>& job) {
-        return job.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    });
     const std::filesystem::path file = name_aside(input, map, frame);
     for (const MapTile& tile : map.tiles) kept_.erase(name_tile(file, tile.udim));
-    setting_aside_.push_back(std::async(std::launch::async, [file, map, folder = folder_] {
-        std::error_code ignored;
-        std::filesystem::create_directories(folder, ignored);
-        try {
-            write_map(map, file, MapSamples::float32);
-        } catch (const std::exception&) { // the strokes are in memory as well
-        }
-    }));
+    writer_.write(file, map);
     return file;
 }
 
@@ -117,17 +105,15 @@ void UserState::keep_painted(double now, Document& document) {
     if (folder_.empty()) return;
     if (!document.has_painted()) last_write_ = now, last_count_ = document.paint_count();
     if (now - last_write_ < kKeepInterval || last_count_ == document.paint_count()) return;
-    if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    if (writer_.is_busy()) return;
     last_write_ = now;
     write_painted(document);
 }
 
 void UserState::keep_now(Document& document) {
-    if (writing_.valid()) writing_.wait();
-    if (!folder_.empty() && document.has_painted()) {
-        write_painted(document);
-        writing_.wait();
-    }
+    if (!folder_.empty() && document.has_painted()) write_painted(document);
+    writer_.wait();
+    writer_.forget();
     kept_.clear();
     last_count_ = 0;
 }
@@ -135,26 +121,15 @@ void UserState::keep_now(Document& document) {
 void UserState::write_painted(Document& document) {
     last_count_ = document.paint_count();
     const std::shared_ptr<const SharedScene> scene = document.snapshot();
-    std::vector<std::pair<const Displacement*, std::filesystem::path>> maps;
-    for (const Displacement& map : scene->scene.displacements)
-        if (document.has_painted(map.name)) {
-            std::string name = map.name;
-            std::ranges::replace(name, '/', '_');
-            maps.emplace_back(&map,
-                              name_painted(document.input().file, map.is_udim ? name + ".<UDIM>" : name));
-        }
-    for (const auto& [map, pattern] : maps)
-        for (const MapTile& tile : map->tiles) kept_.insert(name_tile(pattern, tile.udim));
-    writing_ = std::async(std::launch::async, [scene, maps, folder = folder_] {
-        std::error_code ignored;
-        std::filesystem::create_directories(folder, ignored);
-        for (const auto& [map, file] : maps) {
-            try {
-                write_map(*map, file, MapSamples::float32);
-            } catch (const std::exception&) { // the next time may do better
-            }
-        }
-    });
+    for (const Displacement& map : scene->scene.displacements) {
+        if (!document.has_painted(map.name)) continue;
+        std::string name = map.name;
+        std::ranges::replace(name, '/', '_');
+        const std::filesystem::path pattern =
+            name_painted(document.input().file, map.is_udim ? name + ".<UDIM>" : name);
+        for (const MapTile& tile : map.tiles) kept_.insert(name_tile(pattern, tile.udim));
+        writer_.write(pattern, map);
+    }
 }
 
 std::vector<std::filesystem::path> UserState::claim_painted(const std::filesystem::path& input) {
@@ -181,8 +156,8 @@ std::vector<std::filesystem::path> UserState::claim_painted(const std::filesyste
 }
 
 void UserState::forget_painted() {
-    if (writing_.valid()) writing_.wait();
-    for (const std::future<void>& job : setting_aside_) job.wait();
+    writer_.wait();
+    writer_.forget();
     std::error_code ignored;
     for (const std::filesystem::path& file : std::exchange(kept_, {})) std::filesystem::remove(file, ignored);
 }

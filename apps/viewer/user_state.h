@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <future>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "viewer/document.h"
+#include "viewer/map_writer.h"
 
 namespace relief::viewer {
 
@@ -23,7 +23,6 @@ class UserState {
 
     /// Without a folder nothing is kept. The folder is made when something is written.
     explicit UserState(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    ~UserState();
 
     /// The last one first; those that are gone are left out.
     std::vector<std::filesystem::path> read_recent() const;
@@ -34,13 +33,16 @@ class UserState {
     void keep_painted(double now, Document& document);
     /// The same at once, and waits until they are written: the document is about to go.
     void keep_now(Document& document);
-    /// Writes a painted map that another frame has not, in a thread; returns its name, of which `<UDIM>` may
-    /// be a part, or nothing where nothing is kept. It stays when the document is saved, until it comes back.
+    /// Writes a painted map that another frame has not, in a thread, if it was painted on since it was set
+    /// aside last; returns its name, of which `<UDIM>` may be a part, or nothing where nothing is kept. It
+    /// stays when the document is saved, until it comes back.
     std::filesystem::path set_aside(const std::filesystem::path& input, const Displacement& map, int frame);
     /// The map is shown again, and what was painted on it is kept and forgotten with the document.
     void take_back(const std::filesystem::path& input, const Displacement& map, int frame);
     /// The document was saved: what this run kept of it goes. Files of earlier runs stay.
     void forget_painted();
+    /// Why painted maps could not be written, since the last call.
+    std::vector<std::string> take_errors() { return writer_.take_errors(); }
     /// Maps of a scene or mesh that were painted and not saved before it was closed, or a run crashed. Gives
     /// them names that nothing else is written to, `kept-...`.
     std::vector<std::filesystem::path> claim_painted(const std::filesystem::path& input);
@@ -53,8 +55,7 @@ class UserState {
     void write_painted(Document& document);
 
     std::filesystem::path folder_;
-    std::future<void> writing_;
-    std::vector<std::future<void>> setting_aside_;
+    MapWriter writer_;
     std::set<std::filesystem::path> kept_; ///< files of this run, of the document that is open
     double last_write_ = 0;
     uint64_t last_count_ = 0; ///< Document::paint_count() then

@@ -315,6 +315,10 @@ bool Workbench::update(double now) {
         needs_request_ = true;
     }
     if (needs_request_) request();
+    for (const std::string& error : state_.take_errors()) {
+        message_ = fmt::format("what was painted is not kept: {}", error);
+        has_news_ = true;
+    }
     note_message();
     if (document_ && !is_painted_on) state_.keep_painted(now_, *document_);
     return std::exchange(has_news_, false);

@@ -237,6 +237,17 @@ TEST_F(FrameTest, strokes_on_a_map_of_one_frame_come_back_with_it) {
     EXPECT_EQ(read_texel(read_texture(kept[0]), 12, 20).z, 0.75f);
 }
 
+TEST_F(FrameTest, strokes_that_cannot_be_kept_are_told_of) {
+    std::ofstream(folder_ / "state") << "no folder";
+    bench_ = std::make_unique<Workbench>(settings_, given_, nullptr, folder_ / "state");
+    bench_->set_area({0, 0, 48, 32});
+    open_sequence();
+    paint(0.75f);
+    show(2);
+    EXPECT_TRUE(reach([&] { return bench_->message().find("is not kept") != std::string::npos; }))
+        << bench_->message();
+}
+
 TEST_F(FrameTest, a_frame_whose_file_is_missing_leaves_what_is_shown) {
     open_sequence();
     std::filesystem::remove(folder_ / "maps" / "bumps.0003.exr");

@@ -1,8 +1,10 @@
 // What was painted survives: names that other files have, files that change, and the end of the viewer.
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <unistd.h>
@@ -120,6 +122,45 @@ TEST_F(KeptPaint, stays_with_a_viewer_that_still_runs) {
     std::filesystem::rename(kept, name);
     EXPECT_TRUE(state.claim_painted(document.input().file).empty());
     EXPECT_TRUE(std::filesystem::exists(name));
+}
+
+TEST_F(KeptPaint, of_maps_that_are_set_aside_faster_than_they_are_written_the_last_one_stays) {
+    Document document = open_document();
+    UserState state(this->state());
+    std::filesystem::path file;
+    for (int k = 1; k <= 40; ++k) {
+        paint(document, float(k) / 64);
+        const auto scene = document.snapshot();
+        file = state.set_aside(document.input().file, scene->scene.displacements[0], 2);
+    }
+    state.forget_painted(); // waits
+    EXPECT_EQ(read_height(file), 40.0f / 64);
+    EXPECT_TRUE(state.take_errors().empty());
+    for (const auto& entry : std::filesystem::directory_iterator(this->state()))
+        EXPECT_EQ(entry.path(), file);
+}
+
+TEST_F(KeptPaint, what_was_set_aside_is_written_again_where_it_was_painted_on_alone) {
+    Document document = open_document();
+    UserState state(this->state());
+    paint(document, 0.25f);
+    std::filesystem::path file;
+    const auto set_aside = [&] {
+        const auto scene = document.snapshot();
+        file = state.set_aside(document.input().file, scene->scene.displacements[0], 2);
+    };
+    set_aside();
+    ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(file); }));
+    const auto long_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(1);
+    std::filesystem::last_write_time(file, long_ago);
+    const auto written = std::filesystem::last_write_time(file);
+    set_aside();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(std::filesystem::last_write_time(file), written);
+    paint(document, 0.5f);
+    set_aside();
+    EXPECT_TRUE(wait_until([&] { return std::filesystem::last_write_time(file) != written; }));
+    EXPECT_EQ(read_height(file), 0.5f);
 }
 
 TEST_F(KeptPaint, a_file_that_comes_later_is_reported) {
