@@ -22,6 +22,7 @@ SharedMeshes take_meshes(std::vector<Mesh> meshes, const SharedMeshes& before) {
 } // namespace
 
 ShotFrame ShotReader::read(int frame, uint64_t known) {
+    if (shot_.is_animated()) shot_.list_files(frame); // update() takes the last file where there is none
     SceneUpdate update = shot_.update(frame);
     if (update.scene) {
         last_.meshes = take_meshes(std::exchange(update.scene->meshes, {}), last_.meshes);

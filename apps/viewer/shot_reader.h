@@ -30,7 +30,8 @@ class ShotReader {
     const std::vector<int>& frames() const { return shot_.frames(); }
     bool is_animated() const { return shot_.is_animated(); }
 
-    /// `known`: content that the caller has. Throws as Shot::update.
+    /// `known`: content that the caller has. Throws as Shot::update, and as Shot::list_files for a numbered
+    /// file that is not there, before the first one and after the last too.
     ShotFrame read(int frame, uint64_t known = 0);
 
   private:

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "common/texel_values.h"
+#include "relief/error.h"
 #include "relief/io.h"
 #include "relief/shot.h"
 #include "viewer/workbench_fixture.h"
@@ -257,6 +258,19 @@ TEST_F(FrameTest, a_frame_whose_file_is_missing_leaves_what_is_shown) {
     EXPECT_NE(bench_->message().find("frame 3"), std::string::npos) << bench_->message();
     show(4);
     EXPECT_EQ(bench_->picture()->image.pixels, render_frame(4));
+}
+
+TEST_F(FrameTest, frames_before_the_first_file_and_after_the_last_are_refused) {
+    open_sequence();
+    for (const int frame : {0, 6, 9}) {
+        ASSERT_TRUE(bench_->show_frame(frame));
+        ASSERT_TRUE(reach([&] { return bench_->wanted_frame() == bench_->frame(); }));
+        EXPECT_EQ(bench_->frame(), 1);
+        EXPECT_EQ(bench_->message().find("frame " + std::to_string(frame)), 0u) << bench_->message();
+        EXPECT_THROW(render_frame(frame), Error);
+    }
+    show(5);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(5));
 }
 
 TEST_F(FrameTest, a_map_that_is_rewritten_is_read_again_at_a_frame_with_keys) {
