@@ -59,9 +59,13 @@ void ChangedFields::note(const Displacement& before, const Displacement& after, 
     fields = (fields & ~touched) | (touched & changed);
 }
 
-void ChangedFields::carry(const Displacement& from, Displacement& to) const {
-    const auto changed = displacements_.find(to.name);
-    if (changed != displacements_.end()) copy_fields(from, to, changed->second, kDisplacementFields);
+ChangedFields::Fields ChangedFields::find(const std::string& displacement) const {
+    const auto changed = displacements_.find(displacement);
+    return changed == displacements_.end() ? 0 : changed->second;
+}
+
+void ChangedFields::copy(const Displacement& from, Displacement& to, Fields fields) {
+    copy_fields(from, to, fields, kDisplacementFields);
 }
 
 void ChangedFields::note(const Material& before, const Material& after) {

@@ -13,6 +13,8 @@ namespace relief::viewer {
 
 class ChangedFields {
   public:
+    using Fields = uint32_t; ///< a bit each
+
     /// `read`: as the file has it at this frame; what is that again counts as changed no more.
     void note(const Displacement& before, const Displacement& after, const Displacement& read);
     void note(const Material& before, const Material& after);
@@ -22,12 +24,12 @@ class ChangedFields {
     /// Gives `to`, the same scene at another frame, the fields of `from` that were changed: of displacements
     /// and materials by their names, of lights by their numbers where there are as many.
     void carry(const Scene& from, Scene& to) const;
-    /// The same of one displacement.
-    void carry(const Displacement& from, Displacement& to) const;
+    /// Of a displacement, to be put back.
+    Fields find(const std::string& displacement) const;
+    void set(const std::string& displacement, Fields fields) { displacements_[displacement] = fields; }
+    static void copy(const Displacement& from, Displacement& to, Fields fields);
 
   private:
-    using Fields = uint32_t; ///< a bit each
-
     std::map<std::string, Fields> displacements_, materials_;
     std::map<size_t, Fields> lights_;
     Fields environment_ = 0;

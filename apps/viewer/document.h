@@ -64,8 +64,11 @@ class Document {
     /// Another frame of the same file. What was changed stays changed; strokes stay where the frame has the
     /// map that they are on, others come back with it.
     FrameStrokes show_frame(ShotFrame next);
-    /// Gives how a map was meant at another frame what it has at this one, but for what was changed.
+    MapMeaning find_meaning(size_t displacement) const;
+    /// Gives how a map was meant at another frame what it has at this one, but for what was changed then.
     void follow_frame(MapMeaning& meaning) const;
+    /// Makes a map mean that; returns what it meant before.
+    MapMeaning exchange_meaning(const MapMeaning& meaning);
     /// Strokes that are not saved are on maps of other frames.
     bool has_strokes_aside() const;
     const Scene& scene() const { return scene_; }

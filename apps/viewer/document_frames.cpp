@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -91,10 +92,26 @@ FrameStrokes Document::show_frame(ShotFrame next) {
     return strokes;
 }
 
+MapMeaning Document::find_meaning(size_t displacement) const {
+    const Displacement& map = scene_.displacements.at(displacement);
+    return {displacement, get_meaning(map), changed_.find(map.name)};
+}
+
 void Document::follow_frame(MapMeaning& meaning) const {
     if (meaning.displacement >= scene_.displacements.size()) return;
     const Displacement before = std::exchange(meaning.meaning, get_meaning(read_maps_[meaning.displacement]));
-    changed_.carry(before, meaning.meaning);
+    ChangedFields::copy(before, meaning.meaning, meaning.changed);
+}
+
+MapMeaning Document::exchange_meaning(const MapMeaning& meaning) {
+    MapMeaning before = find_meaning(meaning.displacement);
+    change_displacement(meaning.displacement, [&](Displacement& map) {
+        std::vector<MapTile> tiles = std::move(map.tiles);
+        map = meaning.meaning;
+        map.tiles = std::move(tiles);
+    });
+    changed_.set(before.meaning.name, meaning.changed);
+    return before;
 }
 
 bool Document::has_strokes_aside() const {

@@ -238,15 +238,8 @@ void Painter::end() {
 }
 
 MapMeaning Painter::exchange_meaning(const MapMeaning& meaning) {
-    MapMeaning other{meaning.displacement, {}};
-    document_.change_displacement(meaning.displacement, [&](Displacement& map) {
-        other.meaning = get_meaning(map);
-        std::vector<MapTile> tiles = std::move(map.tiles);
-        map = meaning.meaning;
-        map.tiles = std::move(tiles);
-    });
     frames_.clear(); // the space may be another
-    return other;
+    return document_.exchange_meaning(meaning);
 }
 
 std::vector<MapEdit> Painter::undo() {

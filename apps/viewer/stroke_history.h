@@ -14,6 +14,7 @@
 #include "relief/image.h"
 #include "relief/scene.h"
 #include "viewer/brush.h"
+#include "viewer/changed_fields.h"
 
 namespace relief::viewer {
 
@@ -28,6 +29,7 @@ struct TilePlace {
 struct MapMeaning {
     size_t displacement = 0;
     Displacement meaning;
+    ChangedFields::Fields changed = 0; ///< what of it differs from the file, and stays at other frames
 };
 Displacement get_meaning(const Displacement& map);
 

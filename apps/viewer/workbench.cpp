@@ -112,7 +112,7 @@ void Workbench::change_displacement(size_t index, const std::function<void(Displ
     const bool is_new = now_ - last_map_change_ > kChangeInterval;
     last_map_change_ = now_;
     change_document([&](Document& document) {
-        const MapMeaning before{index, get_meaning(document.scene().displacements.at(index))};
+        const MapMeaning before = document.find_meaning(index);
         document.change_displacement(index, change);
         painter_->note_meaning(before, is_new);
     });

@@ -136,6 +136,26 @@ TEST_F(FrameTest, what_is_taken_back_at_another_frame_follows_its_keys_again) {
     EXPECT_EQ(bench_->picture()->image.pixels, render_frame(5));
 }
 
+TEST_F(FrameTest, a_change_of_a_value_with_keys_is_taken_back_and_made_again_at_another_frame) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    bench_->change_displacement(0, [](Displacement& map) { map.scale = {9, 9, 9}; });
+    show(3);
+    EXPECT_EQ(map().scale.x, 9);
+    bench_->undo();
+    EXPECT_EQ(map().scale.x, 1.5f);
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
+    show(5);
+    EXPECT_EQ(map().scale.x, 2);
+    bench_->redo();
+    EXPECT_EQ(map().scale.x, 9);
+    show(1);
+    EXPECT_EQ(map().scale.x, 9);
+    bench_->undo();
+    show(3);
+    EXPECT_EQ(map().scale.x, 1.5f);
+}
+
 TEST_F(FrameTest, a_camera_with_keys_moves_until_somebody_else_moves_it) {
     open_animated("\"from\"", R"({"keys": [[1, [0, 0, 4]], [5, [4, 0, 4]]]})");
     const uint64_t content = bench_->document()->content();
