@@ -210,6 +210,7 @@ void Workbench::request(std::vector<MapEdit> edits) {
     request.use = choose_use();
     const uint64_t version = loop_.show(request, std::move(edits));
     if (std::exchange(has_changed_, false)) wanted_version_ = version;
+    if (std::exchange(has_new_frame_, false)) frame_version_ = version;
 }
 
 void Workbench::take_picture() {

@@ -189,7 +189,7 @@ class Workbench {
     void poll_frames();
     void read_frame();
     void tell_strokes(int left_frame, const FrameStrokes& strokes);
-    /// A picture of what was wanted last, or none of it is to come.
+    /// A picture of the frame that is shown, by any camera, or none of it is to come.
     bool has_picture() const;
     void watch_files();
     void reload(const std::vector<std::filesystem::path>& files);
@@ -237,6 +237,8 @@ class Workbench {
     Timeline timeline_;
     std::optional<int> wanted_frame_; ///< to be read and shown
     int reading_number_ = 1;          ///< of the frame that is being read
+    bool has_new_frame_ = true;       ///< none was requested of it
+    uint64_t frame_version_ = 0;      ///< of the first request of the frame that is shown
     Camera scene_camera_;
     bool has_own_camera_ = false; ///< somebody moved it
 

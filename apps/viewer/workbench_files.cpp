@@ -91,6 +91,7 @@ void Workbench::adopt(Loaded loaded) {
     document_ = std::make_unique<Document>(loaded.input, std::move(*loaded.loaded));
     painter_ = std::make_unique<Painter>(*document_);
     ++scene_count_;
+    has_new_frame_ = true;
     const Scene& scene = document_->scene();
     scene_camera_ = scene.camera;
     if (is_first || !loaded.keeps_camera) {

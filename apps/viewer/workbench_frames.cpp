@@ -47,7 +47,7 @@ void Workbench::take_scene_camera() {
 }
 
 bool Workbench::has_picture() const {
-    return !needs_request_ && ((picture_ && picture_->version >= wanted_version_) || !last_error_.empty());
+    return !has_new_frame_ && ((picture_ && picture_->version >= frame_version_) || !last_error_.empty());
 }
 
 /// A frame is not shown before there is a picture of the one before: else there would never be one.
@@ -106,6 +106,7 @@ void Workbench::adopt(ReadFrame read) {
         watch_files();
     }
     forget_explanation();
+    has_new_frame_ = true;
     set_motion(Motion::moving);
     tell_strokes(left_frame, strokes);
 }

@@ -311,6 +311,18 @@ TEST_F(FrameTest, a_numbered_map_that_is_rewritten_is_read_again) {
     EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
 }
 
+TEST_F(FrameTest, frames_go_on_while_the_camera_moves) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    bench_->set_playing(true);
+    std::set<int> seen;
+    EXPECT_TRUE(reach([&] { // each time before the next update
+        bench_->change_camera([](OrbitCamera& camera) { camera.orbit(0.01f, 0); });
+        return seen.insert(*bench_->frame()), seen.size() >= 4;
+    }));
+    bench_->set_playing(false);
+    EXPECT_TRUE(reach_done());
+}
+
 TEST_F(FrameTest, a_scene_without_keys_has_no_frames) {
     open_scene();
     EXPECT_FALSE(bench_->frame());
