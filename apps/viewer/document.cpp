@@ -203,12 +203,15 @@ bool Document::may_write(const std::filesystem::path& pattern, const Displacemen
     std::error_code ignored;
     return std::ranges::all_of(map.tiles, [&](const MapTile& tile) {
         const std::filesystem::path file = name_tile(pattern, tile.udim);
-        return written_.contains(file) || !std::filesystem::exists(file, ignored);
+        const auto written = written_.find(file);
+        if (written == written_.end()) return !std::filesystem::exists(file, ignored);
+        return written->second == name_source(*read_.at({map.name, tile.udim}));
     });
 }
 
 void Document::note_written(const std::filesystem::path& pattern, const Displacement& map) {
-    for (const MapTile& tile : map.tiles) written_.insert(name_tile(pattern, tile.udim));
+    for (const MapTile& tile : map.tiles)
+        written_[name_tile(pattern, tile.udim)] = name_source(*read_.at({map.name, tile.udim}));
 }
 
 std::filesystem::path Document::name_painted(const Displacement& map,

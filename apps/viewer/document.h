@@ -69,8 +69,9 @@ class Document {
     void follow_frame(MapMeaning& meaning) const;
     /// Makes a map mean that; returns what it meant before.
     MapMeaning exchange_meaning(const MapMeaning& meaning);
-    /// Strokes that are not saved are on maps of other frames.
-    bool has_strokes_aside() const;
+    /// Frames whose maps have strokes that are not saved, without the one that is shown; rising.
+    std::vector<int> list_frames_aside() const;
+    bool has_strokes_aside() const { return !list_frames_aside().empty(); }
     const Scene& scene() const { return scene_; }
     /// A copy, with all that was painted so far.
     std::shared_ptr<const SharedScene> snapshot();
@@ -103,8 +104,8 @@ class Document {
     void note_replaced_tiles() { ++version_; }
 
     /// Writes a scene file with the picture of these settings, and painted maps beside it, `STEM_NAME.exr`,
-    /// or `STEM_NAME-2.exr` where that is a file which this document did not write. Returns all files
-    /// written. Throws as save_scene_copy and write_map.
+    /// or `STEM_NAME-2.exr` where that is a file which this document did not write, or of another frame.
+    /// Returns all files written. Throws as save_scene_copy and write_map.
     std::vector<std::filesystem::path> save(const std::filesystem::path& file, const ImageSettings& image);
     /// Writes a map in the convention of `to`, whose tiles are ignored. Throws as convert_map and write_map,
     /// and Error{usage} for a file that is there already and that this document did not write.
@@ -118,6 +119,7 @@ class Document {
     struct AsideTile {
         std::shared_ptr<const Texture> texture;
         bool is_saved = false;
+        int frame = 1; ///< where it was shown last
     };
 
     void note_read_maps();
@@ -127,8 +129,8 @@ class Document {
     void touch();
     /// Puts what was painted into the scene.
     void commit();
-    /// No file of a map is there, or this document wrote it. `pattern` holds `<UDIM>` where the map has
-    /// tiles.
+    /// No file of a map is there, or this document wrote it for that map of that frame. `pattern` holds
+    /// `<UDIM>` where the map has tiles.
     bool may_write(const std::filesystem::path& pattern, const Displacement& map) const;
     void note_written(const std::filesystem::path& pattern, const Displacement& map);
     /// The name that a painted map is written to, beside the scene file.
@@ -151,9 +153,9 @@ class Document {
     /// Texels being painted, by the texture that the scene holds in their place.
     std::map<TileKey, std::unique_ptr<Texture>> painted_;
     std::set<TileKey> uncommitted_;
-    std::set<std::string> painted_maps_;      ///< names of displacements, since they were read
-    std::set<std::string> unsaved_;           ///< of these, since they were saved
-    std::set<std::filesystem::path> written_; ///< files of maps
+    std::set<std::string> painted_maps_;                   ///< names of displacements, since they were read
+    std::set<std::string> unsaved_;                        ///< of these, since they were saved
+    std::map<std::filesystem::path, std::string> written_; ///< files of maps, and name_source() of each
     uint64_t paint_count_ = 0;
 };
 

@@ -40,7 +40,8 @@ void Document::put_aside(const Scene& next, FrameStrokes& strokes) {
             if (is_read_again(place)) continue;
             is_left = true;
             if (tile.texture != read_.at(place))
-                aside_[{place, name_source(*read_.at(place))}] = {tile.texture, is_saved};
+                aside_[{place, name_source(*read_.at(place))}] = {tile.texture, is_saved,
+                                                                  input_.frame.value_or(1)};
             painted_.erase(tile.texture.get());
         }
         if (!is_left) continue;
@@ -114,8 +115,11 @@ MapMeaning Document::exchange_meaning(const MapMeaning& meaning) {
     return before;
 }
 
-bool Document::has_strokes_aside() const {
-    return std::ranges::any_of(aside_, [](const auto& tile) { return !tile.second.is_saved; });
+std::vector<int> Document::list_frames_aside() const {
+    std::set<int> frames;
+    for (const auto& [source, tile] : aside_)
+        if (!tile.is_saved) frames.insert(tile.frame);
+    return {frames.begin(), frames.end()};
 }
 
 } // namespace relief::viewer

@@ -185,13 +185,30 @@ void Interface::draw_explanation() {
     ImGui::End();
 }
 
+/// What was not saved is saved, all of it, or may go.
+bool Interface::settle(EndAnswer answer, const std::filesystem::path& file) {
+    if (answer == EndAnswer::leave) return true;
+    return answer == EndAnswer::save && workbench_.save(file) && !workbench_.has_unsaved();
+}
+
+std::filesystem::path Interface::find_scene_file() const {
+    return state_.scene_file.empty() ? workbench_.suggest_file(".json")
+                                     : std::filesystem::path(state_.scene_file);
+}
+
+void Interface::ask_to_open() {
+    const std::filesystem::path file = find_scene_file();
+    const EndAnswer answer = draw_end_question(file.filename().string(), "open without saving");
+    if (answer == EndAnswer::none) return;
+    settle(answer, file) ? workbench_.open_asked() : workbench_.forget_asked();
+}
+
 void Interface::ask_at_end() {
-    const std::filesystem::path file = state_.scene_file.empty() ? workbench_.suggest_file(".json")
-                                                                 : std::filesystem::path(state_.scene_file);
-    const EndAnswer answer = draw_end_question(file.filename().string());
+    const std::filesystem::path file = find_scene_file();
+    const EndAnswer answer = draw_end_question(file.filename().string(), "end without saving");
     if (answer == EndAnswer::none) return;
     is_asking_ = false;
-    may_end_ = answer == EndAnswer::leave || (answer == EndAnswer::save && workbench_.save(file));
+    may_end_ = settle(answer, file);
 }
 
 /// Somebody wants to end, and nothing is lost by it, or it is meant.
@@ -213,7 +230,10 @@ void Interface::draw() {
     draw_line();
     draw_explanation();
     if (workbench_.is_help_shown()) draw_help(workbench_);
-    if (is_asking_) ask_at_end();
+    if (is_asking_)
+        ask_at_end();
+    else if (workbench_.is_asked_to_open())
+        ask_to_open();
     window_.end_frame();
 }
 
@@ -234,8 +254,8 @@ void Interface::run(ScriptRunner* script, double start) {
         note_statistics(workbench_.render_state(), workbench_.picture().get(), state_);
         poll_display();
         const ImGuiIO& io = ImGui::GetIO();
-        const bool is_at_rest =
-            frames == 0 && !needs_texture_ && !is_asking_ && !io.WantCaptureMouse && !io.WantTextInput;
+        const bool is_at_rest = frames == 0 && !needs_texture_ && !is_asking_ &&
+                                !workbench_.is_asked_to_open() && !io.WantCaptureMouse && !io.WantTextInput;
         if (is_at_rest && !window_.has_screenshot_to_take()) continue;
         draw();
         frames = std::max(frames - 1, 0);

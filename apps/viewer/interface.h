@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>
@@ -39,7 +40,10 @@ class Interface {
     void draw_line();
     void draw_explanation();
     void poll_display();
+    bool settle(EndAnswer answer, const std::filesystem::path& file);
+    std::filesystem::path find_scene_file() const;
     void ask_at_end();
+    void ask_to_open();
     bool has_ended();
 
     Window& window_;

@@ -49,8 +49,9 @@ void draw_timeline(Workbench& workbench);
 void draw_state(Workbench& workbench, float indent);
 
 enum class EndAnswer { none, save, leave, stay };
-/// Asks what becomes of changes when the viewer ends. `file`: what they would be saved as.
-EndAnswer draw_end_question(const std::string& file);
+/// Asks what becomes of changes when the viewer ends or opens another file. `file`: what they would be saved
+/// as; `leave`: what is done without that.
+EndAnswer draw_end_question(const std::string& file, const char* leave);
 
 /// Keys, buttons and panels.
 void draw_help(Workbench& workbench);

@@ -93,7 +93,7 @@ void draw_state(Workbench& workbench, float indent) {
     ImGui::EndPopup();
 }
 
-EndAnswer draw_end_question(const std::string& file) {
+EndAnswer draw_end_question(const std::string& file, const char* leave) {
     EndAnswer answer = EndAnswer::none;
     constexpr const char* kTitle = "Not everything is saved";
     if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
@@ -103,7 +103,7 @@ EndAnswer draw_end_question(const std::string& file) {
     ImGui::Text("Save what was changed as %s?", file.c_str());
     if (ImGui::Button("save")) answer = EndAnswer::save;
     ImGui::SameLine();
-    if (ImGui::Button("end without saving")) answer = EndAnswer::leave;
+    if (ImGui::Button(leave)) answer = EndAnswer::leave;
     ImGui::SameLine();
     if (ImGui::Button("go on") || ImGui::IsKeyPressed(ImGuiKey_Escape)) answer = EndAnswer::stay;
     if (answer != EndAnswer::none) ImGui::CloseCurrentPopup();

@@ -114,7 +114,7 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     if (!ImGui::CollapsingHeader("File", ImGuiTreeNodeFlags_DefaultOpen)) return;
     if (ImGui::BeginCombo("##recent", "open again ...")) {
         for (const std::filesystem::path& file : workbench.list_recent())
-            if (ImGui::Selectable(file.string().c_str())) workbench.open({file, {}, {}});
+            if (ImGui::Selectable(file.string().c_str())) workbench.ask_to_open({file});
         ImGui::EndCombo();
     }
     if (!workbench.document()) return;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/explain_pixel.h"
@@ -53,6 +54,11 @@ class Workbench {
     /// Dropped files: a scene or mesh is opened, with the map and the HDR that come with it; a map alone goes
     /// onto the mesh that is open, an HDR becomes the environment.
     void drop(const std::vector<std::filesystem::path>& files);
+    /// What a user wants to open: at once, or, where something is not saved, once open_asked() is called.
+    void ask_to_open(const std::vector<std::filesystem::path>& files);
+    bool is_asked_to_open() const { return !asked_files_.empty(); }
+    void open_asked() { drop(std::exchange(asked_files_, {})); }
+    void forget_asked() { asked_files_.clear(); }
     bool save(const std::filesystem::path& file);
     /// In the convention of a preset (conventions.h); empty: in that which the map has.
     bool save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset = {});
@@ -253,6 +259,7 @@ class Workbench {
     std::shared_ptr<const ShownPicture> picture_;
     std::shared_ptr<const ShownPicture> denoised_; ///< of the same version; null: none
     bool is_denoised_ = false;
+    std::vector<std::filesystem::path> asked_files_;
     std::filesystem::path output_; ///< a picture to write when it is done; empty: none
     std::string message_, last_error_, load_error_;
     std::deque<std::string> messages_;

@@ -124,6 +124,13 @@ void Workbench::watch_files() {
     watch_.watch(files);
 }
 
+void Workbench::ask_to_open(const std::vector<std::filesystem::path>& files) {
+    const bool is_change = std::ranges::all_of(files, is_environment); // of the scene that is open
+    if (is_change || !has_unsaved()) return drop(files);
+    asked_files_ = files;
+    has_news_ = true;
+}
+
 void Workbench::drop(const std::vector<std::filesystem::path>& files) {
     const auto mesh = std::ranges::find_if(files, is_mesh_file);
     if (mesh == files.end()) {
@@ -253,6 +260,9 @@ bool Workbench::save(const std::filesystem::path& file) {
         for (const std::filesystem::path& path : written) watch_.accept(path);
         state_.forget_painted();
         message_ = fmt::format("wrote {}", file.string());
+        if (const std::vector<int> frames = document_->list_frames_aside(); !frames.empty())
+            message_ += fmt::format(", without what was painted at frame {}: show and save that as well",
+                                    fmt::join(frames, ", "));
         has_news_ = true;
     });
 }

@@ -53,7 +53,7 @@ void Workbench::handle(const InputEvent& event) {
         held_keys_.erase(event.key);
         return;
     case Kind::drop:
-        drop(event.files);
+        ask_to_open(event.files);
     }
 }
 

@@ -323,6 +323,24 @@ TEST_F(FrameTest, frames_go_on_while_the_camera_moves) {
     EXPECT_TRUE(reach_done());
 }
 
+TEST_F(FrameTest, a_save_names_the_frames_whose_strokes_it_leaves_and_writes_over_none) {
+    open_sequence();
+    show(2);
+    paint(0.75f);
+    show(3);
+    paint(0.5f);
+    ASSERT_TRUE(bench_->save(folder_ / "same.json"));
+    EXPECT_NE(bench_->message().find("painted at frame 2:"), std::string::npos) << bench_->message();
+    EXPECT_TRUE(bench_->has_unsaved());
+    show(2);
+    ASSERT_TRUE(bench_->save(folder_ / "same.json"));
+    EXPECT_EQ(bench_->message(), "wrote " + (folder_ / "same.json").string());
+    EXPECT_FALSE(bench_->has_unsaved());
+    EXPECT_EQ(render_file("same.json"), bench_->picture()->image.pixels);
+    EXPECT_EQ(read_texel(read_texture(folder_ / "same_bumps.exr"), 12, 20).z, 0.5f);
+    EXPECT_EQ(read_texel(read_texture(folder_ / "same_bumps-2.exr"), 12, 20).z, 0.75f);
+}
+
 TEST_F(FrameTest, a_scene_without_keys_has_no_frames) {
     open_scene();
     EXPECT_FALSE(bench_->frame());

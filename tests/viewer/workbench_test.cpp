@@ -148,6 +148,30 @@ TEST_F(WorkbenchTest, files_that_are_wrong_leave_what_was_open) {
     EXPECT_EQ(bench_->document()->input().file, folder_ / "scene.json");
 }
 
+TEST_F(WorkbenchTest, another_scene_waits_for_an_answer_where_something_is_not_saved) {
+    open_scene();
+    bench_->change_document([](Document& document) {
+        document.change_material(0, [](Material& material) { material.roughness = 0.125f; });
+    });
+    InputEvent event;
+    event.kind = Kind::drop;
+    event.files = {folder_ / "scene.json"};
+    bench_->handle(event);
+    EXPECT_TRUE(bench_->is_asked_to_open());
+    EXPECT_FALSE(bench_->is_loading());
+    bench_->forget_asked();
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->document()->scene().materials[0].roughness, 0.125f);
+    bench_->handle(event);
+    bench_->open_asked();
+    EXPECT_FALSE(bench_->is_asked_to_open());
+    ASSERT_TRUE(reach_done());
+    EXPECT_NE(bench_->document()->scene().materials[0].roughness, 0.125f);
+    bench_->handle(event); // nothing to lose
+    EXPECT_TRUE(bench_->is_loading());
+    ASSERT_TRUE(reach_done());
+}
+
 TEST_F(WorkbenchTest, a_map_dropped_on_a_mesh_displaces_it) {
     bench_->drop({folder_ / "maps" / "bumps.exr"});
     EXPECT_FALSE(bench_->is_loading());
