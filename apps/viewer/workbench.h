@@ -63,9 +63,10 @@ class Workbench {
     /// In the convention of a preset (conventions.h); empty: in that which the map has.
     bool save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset = {});
     std::vector<std::filesystem::path> list_recent() const { return state_.read_recent(); }
-    /// Beside the scene or mesh, with `-view` in its name.
+    /// Beside the scene or mesh, with `-view` in its name; of a picture, `.exr`, with the frame's number.
     std::filesystem::path suggest_file(const char* extension) const;
-    /// Writes the picture, with its layers where it is an .exr, once it has all samples.
+    /// Writes the picture, with its layers where it is an .exr, once it has all samples; at another frame it
+    /// is not written. Pauses.
     void write_picture(const std::filesystem::path& file);
 
     // Input and time.
@@ -217,6 +218,7 @@ class Workbench {
     void press_key(const InputEvent& event);
     bool press_command(int key);
     bool press_frame_key(const InputEvent& event);
+    void drop_output(const char* reason);
     void finish_output();
     Vec2f to_picture(float x, float y) const; ///< pixels of the whole picture
     /// Runs `body`; an exception becomes a message. Returns whether there was none.

@@ -11,6 +11,7 @@
 #include "common/values.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "relief/shot.h"
 #include "viewer/conventions.h"
 #include "viewer/workbench.h"
 
@@ -82,6 +83,7 @@ void Workbench::adopt(Loaded loaded) {
         return;
     }
     const bool is_first = !document_;
+    if (!loaded.keeps_camera) drop_output("another file is open");
     painter_.reset();
     if (document_) state_.keep_now(*document_);
     shot_ = loaded.loaded->shot;
@@ -249,7 +251,8 @@ std::filesystem::path Workbench::suggest_file(const char* extension) const {
          extension == std::string(".json") && document_ && file.parent_path() / (stem + extension) == file;
          ++k)
         stem = fmt::format("{}-{}", stem, k);
-    return file.replace_filename(stem + extension);
+    file.replace_filename(stem + extension);
+    return frame() && extension == std::string(".exr") ? name_frame(file, *frame()) : file;
 }
 
 bool Workbench::save(const std::filesystem::path& file) {
@@ -280,11 +283,19 @@ bool Workbench::save_map(size_t displacement, const std::filesystem::path& file,
 }
 
 void Workbench::write_picture(const std::filesystem::path& file) {
+    timeline_.pause();
+    wanted_frame_.reset(); // what is seen is meant
     output_ = file;
     message_ = fmt::format("{} is written when all samples are there", file.filename().string());
     has_news_ = true;
     if (motion_ != Motion::still) set_motion(Motion::still);
     if (is_done()) finish_output();
+}
+
+void Workbench::drop_output(const char* reason) {
+    if (output_.empty()) return;
+    message_ = fmt::format("{} is not written: {}", std::exchange(output_, {}).filename().string(), reason);
+    note_message();
 }
 
 void Workbench::finish_output() {

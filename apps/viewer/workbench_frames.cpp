@@ -57,7 +57,7 @@ void Workbench::poll_frames() {
         if (const int due = timeline_.find_frame(now_); due != frame()) wanted_frame_ = due;
     if (is_ready(reading_frame_)) {
         const bool is_wanted = wanted_frame_ == reading_number_;
-        if (is_ready_for_next) {
+        if (wanted_frame_ && is_ready_for_next) {
             ReadFrame read = reading_frame_.get();
             attempt([&] { adopt(std::move(read)); });
         } else if (!is_wanted) {
@@ -92,6 +92,7 @@ void Workbench::adopt(ReadFrame read) {
         message_ = fmt::format("frame {}: {}", read.number, read.error);
         return;
     }
+    drop_output("another frame is shown");
     const bool is_view = !read.frame->scene;
     const int left_frame = *frame();
     scene_camera_ = read.frame->camera;

@@ -1,10 +1,13 @@
 // Scenes that differ from frame to frame: frames are shown and played, and what a user did stays.
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -339,6 +342,35 @@ TEST_F(FrameTest, a_save_names_the_frames_whose_strokes_it_leaves_and_writes_ove
     EXPECT_EQ(render_file("same.json"), bench_->picture()->image.pixels);
     EXPECT_EQ(read_texel(read_texture(folder_ / "same_bumps.exr"), 12, 20).z, 0.5f);
     EXPECT_EQ(read_texel(read_texture(folder_ / "same_bumps-2.exr"), 12, 20).z, 0.75f);
+}
+
+TEST_F(FrameTest, a_picture_is_written_of_the_frame_that_it_was_asked_for_at) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    bench_->set_playing(true);
+    ASSERT_TRUE(reach([&] { return *bench_->frame() > 1; }));
+    const int frame = *bench_->frame();
+    EXPECT_EQ(bench_->suggest_file(".exr"), folder_ / ("shot-view.000" + std::to_string(frame) + ".exr"));
+    bench_->write_picture(folder_ / "first.exr");
+    EXPECT_FALSE(bench_->timeline().is_playing());
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->frame(), frame);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "first.exr"));
+    bench_->change_camera([](OrbitCamera& camera) { camera.orbit(0.1f, 0); });
+    bench_->write_picture(folder_ / "second.exr");
+    show(frame == 5 ? 4 : 5);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "second.exr"));
+    EXPECT_NE(std::ranges::find(bench_->messages(), "second.exr is not written: another frame is shown"),
+              bench_->messages().end());
+}
+
+TEST_F(FrameTest, a_frame_that_is_being_read_is_not_shown_when_the_one_before_is_wanted_again) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    bench_->show_frame(2);
+    bench_->show_frame(1);
+    ASSERT_TRUE(reach_done());
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->frame(), 1);
 }
 
 TEST_F(FrameTest, a_scene_without_keys_has_no_frames) {
