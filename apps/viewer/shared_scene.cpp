@@ -1,20 +1,10 @@
 #include "viewer/shared_scene.h"
 
-#include <utility>
-
 namespace relief::viewer {
 
 SharedMeshes share_meshes(const std::vector<Mesh>& meshes) {
     SharedMeshes shared;
     for (const Mesh& mesh : meshes) shared.push_back(std::make_shared<const Mesh>(mesh));
-    return shared;
-}
-
-std::shared_ptr<const SharedScene> share_scene(Scene scene) {
-    auto shared = std::make_shared<SharedScene>();
-    for (Mesh& mesh : std::exchange(scene.meshes, {}))
-        shared->meshes.push_back(std::make_shared<const Mesh>(std::move(mesh)));
-    shared->scene = std::move(scene);
     return shared;
 }
 

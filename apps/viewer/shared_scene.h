@@ -17,7 +17,6 @@ struct SharedScene {
 
 /// Copies of the meshes.
 SharedMeshes share_meshes(const std::vector<Mesh>& meshes);
-std::shared_ptr<const SharedScene> share_scene(Scene scene);
 
 /// The scene with copies of its meshes.
 Scene make_whole(const SharedScene& shared);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,13 @@
 namespace relief::viewer {
 
 namespace {
+
+std::shared_ptr<const SharedScene> share_scene(Scene scene) {
+    auto shared = std::make_shared<SharedScene>();
+    shared->meshes = share_meshes(std::exchange(scene.meshes, {}));
+    shared->scene = std::move(scene);
+    return shared;
+}
 
 RenderRequest make_request(const Scene& scene, Motion motion = Motion::still) {
     RenderRequest request;
