@@ -5,7 +5,7 @@ import json
 import os
 from typing import Any, Mapping
 
-NUMBER = "####"
+NUMBER = "##"  # at least: docs/shots.md
 OF_PICTURE = ("frames", "fps")  # which a scene in memory does not keep
 # Keys of materials that stand for the same under other names, of which a file has one.
 OTHER_NAMES = (({"roughness"}, {"specular_roughness"}), ({"metallic"}, {"base_metalness"}), ({"ior"}, {"specular_ior"}),
@@ -13,13 +13,18 @@ OTHER_NAMES = (({"roughness"}, {"specular_roughness"}), ({"metallic"}, {"base_me
                ({"emission"}, {"emission_luminance", "emission_color"}))
 
 
-def is_moving(value: Any) -> bool:
-    """Whether it has keys or numbered files somewhere inside."""
+def names_file(key: str) -> bool:
+    """Whether texts of this key are names of files, as the reader of scene files takes them."""
+    return key in ("file", "geometry_normal") or key.endswith("_texture")
+
+
+def is_moving(value: Any, key: str = "") -> bool:
+    """Whether it has keys or numbered files somewhere inside. key: of the value."""
     if isinstance(value, Mapping):
-        return "keys" in value or "animation" in value or any(is_moving(part) for part in value.values())
+        return "keys" in value or "animation" in value or any(is_moving(part, inner) for inner, part in value.items())
     if isinstance(value, list):
-        return any(is_moving(part) for part in value)
-    return isinstance(value, str) and NUMBER in value
+        return any(is_moving(part, key) for part in value)
+    return isinstance(value, str) and names_file(key) and NUMBER in value
 
 
 def put_motion(file: str, saved: dict[str, Any], scene: Mapping[str, Any], folder: str) -> None:
@@ -49,11 +54,11 @@ def put_motion(file: str, saved: dict[str, Any], scene: Mapping[str, Any], folde
 
 def is_of_files(part: Any) -> bool:
     """Whether a map or mesh is another file at each frame: all that is said of it is said of these."""
-    return "animation" in part or NUMBER in str(part.get("file", ""))
+    return "animation" in part or is_moving(part.get("file"), "file")
 
 
 def put_values(saved: dict[str, Any], part: Mapping[str, Any], folder: str) -> None:
-    moving = {key for key, value in part.items() if is_moving(value)}
+    moving = {key for key, value in part.items() if is_moving(value, key)}
     for pair in OTHER_NAMES:
         for names, others in (pair, pair[::-1]):
             if moving & names:
