@@ -69,8 +69,9 @@ def put_values(saved: dict[str, Any], part: Mapping[str, Any], folder: str) -> N
 
 
 def resolve(value: Any, folder: str, key: str = "") -> Any:
-    """With whole names of files."""
+    """With whole names of files. key: of the value, which names with keys ([[frame, name], ...]) are names of as well."""
     if isinstance(value, Mapping):
-        return {inner: resolve(part, folder, inner) for inner, part in value.items()}
-    is_file = isinstance(value, str) and (key == "file" or key.endswith("_texture"))
-    return os.path.join(os.path.abspath(folder), value) if is_file else value
+        return {inner: resolve(part, folder, key if inner == "keys" else inner) for inner, part in value.items()}
+    if isinstance(value, list):
+        return [resolve(part, folder, key) for part in value]
+    return os.path.join(os.path.abspath(folder), value) if isinstance(value, str) and names_file(key) else value

@@ -38,7 +38,7 @@ class SceneTest(unittest.TestCase):
         scene.lights = [relief.Light(type="sun", direction=(0, -1, -1), strength={"keys": [[1, 1], [3, 4]]})]
         scene.render = {"frames": "1-3", "fps": 25}
         scene.save(self.folder / "keys")
-        self.write_heights("height.{:04}.exr")
+        self.write_maps("height.{:04}.exr")
         numbered = scenes.make_scene()
         numbered.folder = str(self.folder)
         numbered.displacements["numbered"] = relief.Displacement("height.####.exr", type="height", scale=2)
@@ -53,15 +53,15 @@ class SceneTest(unittest.TestCase):
         root = json.loads((self.folder / "keys" / "scene.json").read_text())
         self.assertEqual((root["render"]["frames"], root["render"]["fps"]), ("1-3", 25))
 
-    def write_heights(self, name):
+    def write_maps(self, name, shape=(4, 4)):
         """Maps of three frames in the folder of the test."""
         for number in (1, 2, 3):
-            height = np.full((4, 4), number / 8, np.float32)
-            relief.Scene.from_mesh(scenes.make_plane(), height).save(self.folder / str(number))
+            values = np.full(shape, number / 8, np.float32)
+            relief.Scene.from_mesh(scenes.make_plane(), values).save(self.folder / str(number))
             os.rename(next((self.folder / str(number)).glob("maps/*.exr")), self.folder / name.format(number))
 
     def test_two_marks_of_a_name_of_a_file_are_a_number(self):
-        self.write_heights("height.{:02}.exr")
+        self.write_maps("height.{:02}.exr")
         scene = scenes.make_scene()
         scene.folder = str(self.folder)
         scene.displacements["numbered"] = relief.Displacement("height.##.exr", type="height", scale=2)
@@ -70,11 +70,25 @@ class SceneTest(unittest.TestCase):
         for frame in (1, 3):
             np.testing.assert_array_equal(self.render(self.folder / "saved" / "scene.json", frame=frame),
                                           self.render(scene, frame=frame))
+        self.assertFalse(np.array_equal(self.render(scene, frame=1), self.render(scene, frame=3)))
         for part, moves in (({"meshes": {"b": {"file": "body.##.obj"}}}, True),
                             ({"meshes": {"b": {"file": "body.#.obj"}}}, False),
                             ({"materials": {"m": {"roughness_texture": "r.###.exr"}}}, True),
                             ({"objects": [{"name": "wall ####", "mesh": "b"}]}, False)):
             self.assertEqual(is_moving(part), moves, part)
+
+    def test_moving_textures_of_all_names_are_found_from_another_folder(self):
+        self.write_maps("map.{:02}.exr", (4, 4, 3))
+        for key, value in (("geometry_normal", "map.##.exr"), ("geometry_normal", {"file": "map.##.exr", "scale": 0.5}),
+                           ("roughness_texture", "map.##.exr"),
+                           ("base_color_texture", {"keys": [[1, "map.01.exr"], [2, "map.03.exr"]]})):
+            scene = scenes.make_scene()
+            scene.folder = str(self.folder)
+            scene.materials["clay"] = relief.Material({key: value})
+            scene.save(self.folder / "saved")
+            for frame in (1, 2):
+                np.testing.assert_array_equal(self.render(self.folder / "saved" / "scene.json", frame=frame),
+                                              self.render(scene, frame=frame), f"{key}: {value}")
 
     def test_comments_and_files_of_the_scene_are_read(self):
         scenes.make_scene().save(self.folder)
