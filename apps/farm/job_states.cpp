@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -75,8 +76,11 @@ class StateReader {
             }
         };
         std::vector<std::future<void>> readers;
-        for (size_t k = 1; k < std::min(kReaders, folders.size()); ++k)
-            readers.push_back(std::async(std::launch::async, read_some));
+        try {
+            for (size_t k = 1; k < std::min(kReaders, folders.size()); ++k)
+                readers.push_back(std::async(std::launch::async, read_some));
+        } catch (const std::system_error&) { // threads are limited here: those that there are read all
+        }
         read_some();
         for (std::future<void>& reader : readers) reader.get();
     }

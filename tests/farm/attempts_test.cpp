@@ -5,8 +5,11 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <system_error>
+#include <thread>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -183,6 +186,49 @@ TEST_F(FarmStates, an_attempt_whose_file_is_gone_still_ends) {
     change_attempt(job_, before, after);
     EXPECT_EQ(read_states(job_).tasks[7], TaskState::partial);
 }
+
+TEST_F(FarmStates, a_folder_that_cannot_be_read_is_not_an_empty_one) {
+    add(0, "a-1-1", AttemptState::done);
+    const fs::path folder = get_state_folder(job_, 0);
+    EXPECT_EQ(read_states(job_).count(TaskState::done), 1u);
+    fs::remove_all(folder);
+    EXPECT_TRUE(list_attempts(job_, 0).empty()) << "it is not there";
+    EXPECT_EQ(read_states(job_).count(TaskState::done), 0u);
+    std::ofstream(folder) << "";
+    EXPECT_EQ(read_states(job_).count(TaskState::done), 0u) << "no folder";
+    fs::remove(folder);
+    fs::create_symlink(folder, folder); // for the superuser, too, whom no rights keep out
+    const auto message_of = [](const auto& read) -> std::string {
+        try {
+            read();
+        } catch (const Error& error) {
+            return error.kind() == ErrorKind::failed ? error.message() + " in " + error.where() : "";
+        }
+        return "";
+    };
+    for (const std::string& message :
+         {message_of([&] { list_attempts(job_, 0); }), message_of([&] { read_states(job_); })}) {
+        EXPECT_NE(message.find("the folder cannot be read: "), std::string::npos) << message;
+        EXPECT_NE(message.find(folder.string()), std::string::npos) << message;
+    }
+}
+
+#ifdef __GLIBC__
+TEST_F(FarmStates, all_is_read_where_no_more_threads_can_be_had) {
+    job_.frames.resize(2000), job_.tiles = 1, job_.passes = 1;
+    for (const uint32_t task : {0u, 1000u}) add(task, "a-1-1", AttemptState::done);
+    pthread_attr_t usual, endless;
+    ASSERT_EQ(::pthread_getattr_default_np(&usual), 0);
+    ASSERT_EQ(::pthread_getattr_default_np(&endless), 0);
+    constexpr size_t kMoreThanAddresses = size_t(1) << 56;
+    ASSERT_EQ(::pthread_attr_setstacksize(&endless, kMoreThanAddresses), 0);
+    ASSERT_EQ(::pthread_setattr_default_np(&endless), 0);
+    EXPECT_THROW(std::thread([] {}).join(), std::system_error);
+    EXPECT_EQ(read_states(job_).count(TaskState::done), 2u);
+    EXPECT_EQ(::pthread_setattr_default_np(&usual), 0);
+    ::pthread_attr_destroy(&usual), ::pthread_attr_destroy(&endless);
+}
+#endif
 
 /// Links that lead nowhere have names, and nothing that could be opened or looked at.
 TEST_F(FarmStates, of_640000_tasks_names_alone_are_read) {
