@@ -33,9 +33,12 @@ size_t count_bytes(const Instance& instance) {
     return sizeof(Instance) + instance.levels->byte_count() + lines;
 }
 
-CacheLimits make_limits(const SurfaceSettings& settings) {
-    if (settings.cache_bytes) return {*settings.cache_bytes, *settings.cache_bytes};
-    return {kDefaultCacheBytes, std::numeric_limits<size_t>::max()};
+CacheLimits make_limits(const SurfaceSettings& settings, const PreparedScene& scene) {
+    CacheLimits limits{kDefaultCacheBytes, std::numeric_limits<size_t>::max()};
+    if (settings.cache_bytes) limits = {*settings.cache_bytes, *settings.cache_bytes};
+    for (const Surface& surface : scene.surfaces)
+        if (surface.has_displacement) limits.patch_count += surface.quads.size();
+    return limits;
 }
 
 } // namespace
@@ -174,7 +177,8 @@ Tracer::Tracer(std::shared_ptr<const PreparedScene> scene, const RenderSettings&
     self.shading = &find_shading_kernels(self.kernels->name);
     self.walk = std::move(walk);
     self.make_trees(*scene_);
-    self.cache = std::make_unique<PatchTreeCache>(make_limits(settings.surface), self.kernels->build_tree);
+    self.cache =
+        std::make_unique<PatchTreeCache>(make_limits(settings.surface, *scene_), self.kernels->build_tree);
     self.follow_lists(*scene_);
     self.view.cache = self.cache.get();
     self.view.leaf = settings.surface.leaf, self.view.lod = settings.surface.lod;

@@ -118,6 +118,25 @@ TEST(PatchTreeCacheLimits, a_cache_grows_until_no_tree_is_built_again) {
     EXPECT_EQ(grown.built, 40 + grown.rebuilt);
 }
 
+TEST(PatchTreeCacheLimits, many_small_trees_find_slots_while_there_is_room) {
+    RenderSettings settings;
+    const auto prepared = prepare_torus(settings);
+    const auto count_rebuilt = [&](size_t patch_count) {
+        constexpr size_t kBytes = size_t(1) << 20;
+        cpu::PatchTreeCache cache({kBytes, kBytes, patch_count}, cpu::find_kernels(Isa::best)->build_tree);
+        for (int round = 0; round < 2; ++round)
+            for (uint32_t k = 0; k < 2000; ++k) { // as many as patches of a mesh that is much finer
+                cpu::TraceContext& context = cache.acquire();
+                const cpu::TreeKey key{k / 50, k % 50, 0, scalar::pack_uniform_level(0)};
+                cache.find_or_build_tree(context, prepared->surfaces[0], key);
+                cache.release(context);
+            }
+        return cache.sum_counters().rebuilt;
+    };
+    EXPECT_LT(count_rebuilt(2000), 100u);
+    EXPECT_GT(count_rebuilt(0), 500u) << "a slot for 4096 bytes";
+}
+
 TEST(PatchTreeCacheLimits, new_trees_alone_do_not_make_a_cache_grow) {
     size_t peak = 0;
     const cpu::TraceCounters once = visit_tiles({10 * kTreeBytes, 1000 * kTreeBytes}, 200, 1, &peak);

@@ -59,7 +59,9 @@ PatchTreeCache::PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree)
         // Fixed from here on; a cache that has to grow holds trees larger than the mean.
         const size_t expected_bytes = std::min(limits.most_bytes, kTableGrowth * limits.cap_bytes);
         const size_t count = std::max(limits.cap_bytes, expected_bytes) / kMeanTreeBytes;
-        slot_count_ = std::bit_ceil(std::clamp<size_t>(count, 64, size_t(1) << 20));
+        const size_t most_slots = std::bit_floor(limits.cap_bytes / (8 * sizeof(slots_[0])) + 1);
+        slot_count_ = std::max(std::bit_ceil(std::clamp<size_t>(count, 64, size_t(1) << 20)),
+                               std::min(std::bit_ceil(2 * limits.patch_count), most_slots));
         slots_ = std::make_unique<std::atomic<CachedTree*>[]>(slot_count_);
     }
     const auto without_table = [&](size_t bytes) { return bytes - std::min(bytes, table_bytes()); };

@@ -87,6 +87,7 @@ struct TraceContext {
 struct CacheLimits {
     size_t cap_bytes = 0; ///< at first; 0: nothing is kept
     size_t most_bytes = 0;
+    size_t patch_count = 0; ///< with a tree each: two slots a patch, within an eighth of `cap_bytes`
 };
 
 class PatchTreeCache {
