@@ -12,8 +12,7 @@ namespace relief {
 
 namespace {
 
-constexpr size_t kPixelsOfAWorker = 1024;  ///< pixels that a worker takes at a time
-constexpr size_t kPixelsOfACall = 1 << 20; ///< about as many rays an engine gets at a time, 64 bytes each
+constexpr size_t kPixelsOfAWorker = 1024; ///< pixels that a worker takes at a time
 
 Ray make_ray(const scalar::CameraFrame& camera, int x, int y) {
     const scalar::CameraRay seen = scalar::make_pinhole_ray(camera, {float(x) + 0.5f, float(y) + 0.5f});
@@ -35,9 +34,11 @@ std::optional<Vec3f> find_position(const PreparedScene& scene, uint32_t object, 
 
 } // namespace
 
-MotionVectors::MotionVectors(const Engine& engine, const PreparedScene& scene, const Window& window)
+MotionVectors::MotionVectors(const Engine& engine, const PreparedScene& scene, const Window& window,
+                             size_t rays_of_a_call)
     : window_(window), camera_(make_camera_frame(scene)) {
-    const int width = window.x1 - window.x0, rows = std::max(1, int(kPixelsOfACall) / std::max(1, width));
+    const int width = window.x1 - window.x0;
+    const int rows = std::max(1, int(rays_of_a_call) / std::max(1, width));
     seen_.reserve(size_t(width) * size_t(window.y1 - window.y0));
     std::vector<Ray> rays;
     std::vector<RayHit> hits;
