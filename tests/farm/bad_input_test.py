@@ -51,9 +51,12 @@ def check_changed_file(relief, folder):
     status = read_status(relief, job)
     assert status["tasks"]["failed"] == 1 and status["tasks"]["done"] == 2, status
     expect(status["failed"][0]["reason"], "bumps.0002.png")
+    run(relief, "farm", "retry", job)
+    told = run(relief, "farm", "submit", job, "--workers", "1", code=3).stderr
+    expect(told, "task 2 (frame 2", "bumps.0002.png: the file was changed after the job was planned", "tells why")
     image.write_bytes(before)  # its time is another, its content is not
     retried = run(relief, "farm", "retry", job)
-    expect(retried.stdout, "1 failed, 0 stale and 0 partial tasks: 2", "relief farm submit")
+    expect(retried.stdout, "2 failed, 0 stale and 0 partial tasks: 2-3", "relief farm submit")
     run(relief, "farm", "work", job, "--task", "2")
     scene = (folder / "shot.json").read_text()
     (folder / "shot.json").write_text(scene.replace("0.6", "0.5"))
