@@ -56,7 +56,7 @@ void add_assumption_warnings(Scene& scene, const RenderOptions& options) {
 }
 
 std::string name_setting(std::string warning, bool is_mesh) {
-    return is_mesh ? name_options(std::move(warning)) : name_keys(std::move(warning));
+    return name_options(is_mesh ? std::move(warning) : name_keys(std::move(warning)));
 }
 
 void print_warnings(const std::vector<std::string>& warnings, bool is_mesh) {

@@ -17,7 +17,8 @@ namespace relief::cli {
 /// what was declared, which is no warning: who declared it may know better.
 void add_assumption_warnings(Scene& scene, const RenderOptions& options);
 
-/// "displacement.axes = t,n,b" as the user writes it: an option with a mesh, a key in a scene file.
+/// "displacement.axes = t,n,b" as the user writes it: an option with a mesh, a key in a scene file. Settings
+/// of the render are options with both.
 std::string name_setting(std::string warning, bool is_mesh);
 
 /// In lines of their own, with settings in the words of `name_setting`.

@@ -1,9 +1,12 @@
 // Settings of the library, as users of the command read of them.
 #include "common/option_names.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "command.h"
+#include "render_warnings.h"
 
 namespace relief::cli {
 namespace {
@@ -20,6 +23,12 @@ TEST(OptionNames, replace_names_of_settings_and_their_equals_signs) {
 TEST(OptionNames, leave_other_names_alone) {
     for (const char* text : {"", "read maps/image.crop", "surface.level.exr is there", "my_image.spp = 3"})
         EXPECT_EQ(name_options(text), text);
+}
+
+TEST(OptionNames, are_keys_of_a_scene_file_for_what_stands_there) {
+    const std::string text = "write displacement.wrap = repeat; surface.cache_bytes sets its cap";
+    EXPECT_EQ(name_setting(text, true), "write --wrap repeat; --bottom-cache sets its cap");
+    EXPECT_EQ(name_setting(text, false), "write \"wrap\": \"repeat\"; --bottom-cache sets its cap");
 }
 
 class OptionNamesOfCommand : public CommandTest {};
