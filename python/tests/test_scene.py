@@ -60,6 +60,11 @@ class SceneTest(unittest.TestCase):
             relief.Scene.from_mesh(scenes.make_plane(), values).save(self.folder / str(number))
             os.rename(next((self.folder / str(number)).glob("maps/*.exr")), self.folder / name.format(number))
 
+    def expect_saved_frames(self, scene, frames, message=""):
+        for frame in frames:
+            np.testing.assert_array_equal(self.render(self.folder / "saved" / "scene.json", frame=frame),
+                                          self.render(scene, frame=frame), message)
+
     def test_two_marks_of_a_name_of_a_file_are_a_number(self):
         self.write_maps("height.{:02}.exr")
         scene = scenes.make_scene()
@@ -67,9 +72,7 @@ class SceneTest(unittest.TestCase):
         scene.displacements["numbered"] = relief.Displacement("height.##.exr", type="height", scale=2)
         scene.objects[0]["displacement"] = "numbered"
         scene.save(self.folder / "saved")
-        for frame in (1, 3):
-            np.testing.assert_array_equal(self.render(self.folder / "saved" / "scene.json", frame=frame),
-                                          self.render(scene, frame=frame))
+        self.expect_saved_frames(scene, (1, 3))
         self.assertFalse(np.array_equal(self.render(scene, frame=1), self.render(scene, frame=3)))
         for part, moves in (({"meshes": {"b": {"file": "body.##.obj"}}}, True),
                             ({"meshes": {"b": {"file": "body.#.obj"}}}, False),
@@ -86,9 +89,7 @@ class SceneTest(unittest.TestCase):
             scene.folder = str(self.folder)
             scene.materials["clay"] = relief.Material({key: value})
             scene.save(self.folder / "saved")
-            for frame in (1, 2):
-                np.testing.assert_array_equal(self.render(self.folder / "saved" / "scene.json", frame=frame),
-                                              self.render(scene, frame=frame), f"{key}: {value}")
+            self.expect_saved_frames(scene, (1, 2), f"{key}: {value}")
 
     def test_comments_and_files_of_the_scene_are_read(self):
         scenes.make_scene().save(self.folder)

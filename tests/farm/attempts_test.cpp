@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "farm/job_states.h"
+#include "job_test.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -21,29 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class FarmStates : public testing::Test {
-  protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "relief-farm-XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        job_.folder = pattern;
-        for (int frame = 1; frame <= 3; ++frame) job_.frames.push_back(frame);
-        job_.tiles = 2, job_.passes = 2, job_.spp = 5;
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(job_.folder, ignored);
-    }
-    void add(uint32_t task, const std::string& who, AttemptState state) const {
-        Attempt attempt;
-        attempt.task = task, attempt.who = who, attempt.state = state;
-        attempt.rays = 1000, attempt.milliseconds = 500, attempt.exit_code = 3;
-        fs::create_directories(get_state_folder(job_, task));
-        std::ofstream(get_attempt_file(job_, attempt)) << "";
-    }
-
-    FarmJob job_;
-};
+class FarmStates : public FarmJobTest {};
 
 TEST_F(FarmStates, a_name_says_all_of_an_attempt) {
     Attempt attempt;

@@ -6,9 +6,9 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include "farm/attempts.h"
+#include "job_test.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -18,25 +18,14 @@ namespace fs = std::filesystem;
 
 constexpr uint32_t kTask = 7;
 
-class FarmDamagedPart : public testing::Test {
+class FarmDamagedPart : public FarmJobTest {
   protected:
     void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "relief-farm-XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        job_.folder = pattern;
-        job_.frames = {1, 2, 3}, job_.tiles = 4;
+        FarmJobTest::SetUp();
         film_ = get_film_file(job_, kTask);
-        fs::create_directories(get_state_folder(job_, kTask)), fs::create_directories(film_.parent_path());
+        fs::create_directories(film_.parent_path());
     }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(job_.folder, ignored);
-    }
-    void add(const std::string& who, AttemptState state) const {
-        Attempt attempt;
-        attempt.task = kTask, attempt.who = who, attempt.state = state;
-        std::ofstream(get_attempt_file(job_, attempt)) << "";
-    }
+    void add(const std::string& who, AttemptState state) const { FarmJobTest::add(kTask, who, state); }
     /// As an attempt that ends does.
     void put_film(const std::string& content) const {
         const fs::path own = film_.string() + ".own";
@@ -53,7 +42,6 @@ class FarmDamagedPart : public testing::Test {
         return states;
     }
 
-    FarmJob job_;
     fs::path film_;
 };
 
