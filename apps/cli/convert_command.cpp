@@ -124,10 +124,10 @@ int convert_map_file(const ConvertOptions& options) {
     MapOptions meaning = options.from;
     if (meaning.dequantize) meaning.filter = "cubic"; // dequantize asks for a smooth one
     const Displacement from = load_map(options.input, meaning, warnings);
+    std::optional<Mesh> mesh;
+    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()}, warnings);
     print_warnings(options, warnings);
     warnings.clear();
-    std::optional<Mesh> mesh;
-    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()});
     WorkProgress progress(options.progress);
     progress.tell(kBeforeConversion);
     const MapSamples samples = choose_samples(options, from);
@@ -164,8 +164,10 @@ int convert_surface(const ConvertOptions& options) {
                        " goes with --vdm MAP",
                    options.input, "a plain mesh is written as it is");
         WorkProgress progress(options.progress);
-        const Mesh mesh = load_mesh(options.input, {.reader = make_mesh_reader()});
+        std::vector<std::string> warnings;
+        const Mesh mesh = load_mesh(options.input, {.reader = make_mesh_reader()}, warnings);
         progress.tell(kBeforeConversion);
+        print_warnings(options, warnings, &progress);
         write_mesh(mesh, options.output, progress.part(kBeforeConversion, 1));
         fmt::print("wrote {}\n", options.output);
         return kExitDone;

@@ -67,6 +67,16 @@ void append(Inspection mesh, Inspection& map) {
     }
 }
 
+/// Facts and findings of a mesh, after what its reader noticed, as in those of scenes.
+Inspection inspect_read_mesh(const Mesh& mesh, const std::vector<std::string>& warnings,
+                             const Displacement* displacement = nullptr) {
+    Inspection inspection = inspect_mesh(mesh, displacement);
+    std::vector<Finding> findings;
+    for (const std::string& warning : warnings) findings.push_back({Severity::warning, "W-READ", warning});
+    inspection.findings.insert(inspection.findings.begin(), findings.begin(), findings.end());
+    return inspection;
+}
+
 /// A quarter of the check picture.
 RenderSettings make_check_settings() {
     RenderSettings settings;
@@ -86,17 +96,17 @@ void write_check_picture(const Scene& scene, const RenderSettings& settings, con
 }
 
 Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progress) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings, mesh_warnings;
     const Displacement map = load_map(options.file, options.scene.map, warnings);
     progress.tell(kRead);
     const MapMeaning meaning = options.map_only.empty() ? MapMeaning::unknown : MapMeaning::declared;
     std::optional<Mesh> mesh;
-    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()});
+    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()}, mesh_warnings);
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement meant = meaning == MapMeaning::declared ? map : guess_map_meaning(map, mesh_or_null);
     Inspection inspection =
         inspect_map(map, meaning, mesh_or_null, progress.part(kRead, get_picture_start(options)));
-    if (mesh) append(inspect_mesh(*mesh, &meant), inspection);
+    if (mesh) append(inspect_read_mesh(*mesh, mesh_warnings, &meant), inspection);
     if (const std::string pattern = find_tile_pattern(options.file); !pattern.empty())
         inspection.findings.push_back(
             {Severity::warning, "W-TILE",
@@ -115,9 +125,10 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
 }
 
 Inspection inspect_plain_mesh(const InspectOptions& options, WorkProgress& progress) {
-    Mesh mesh = load_mesh(options.file, {.reader = make_mesh_reader()});
+    std::vector<std::string> warnings;
+    Mesh mesh = load_mesh(options.file, {.reader = make_mesh_reader()}, warnings);
     progress.tell(kRead);
-    Inspection inspection = inspect_mesh(mesh);
+    Inspection inspection = inspect_read_mesh(mesh, warnings);
     progress.tell(get_picture_start(options));
     if (!options.picture.empty())
         write_check_picture(make_mesh_scene(std::move(mesh), nullptr), make_check_settings(), options,

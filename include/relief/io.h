@@ -145,6 +145,11 @@ struct MeshReadOptions {
 /// where a child process was ended by a signal or reached a limit; Error{failed} where it cannot be started.
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options = {});
 
+/// The same; what of the file does not show in the mesh, as skins of glTF, is added to `warnings`, with the
+/// name of the file.
+Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options,
+               std::vector<std::string>& warnings);
+
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder; load_scene restores the same scene. Throws
 /// Error{bad_input} for a map in the mesh's own tangent frames, since OBJ has no tangents.
 void save_scene(const Scene& scene, const std::filesystem::path& folder,

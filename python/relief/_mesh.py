@@ -45,6 +45,7 @@ class Mesh:
     creases: (K, 3), rows of two indices of positions and a sharpness, 10 being infinitely sharp; or a tuple of edges (K, 2)
         and sharpness (K,).
     subdivision: dict of the scene file's key: scheme, level, uv, boundary, creases.
+    warnings: what of the file that it was loaded from does not show in it.
 
     The attributes hold the arrays; `sizes` and `corners` are those of the faces. They may be replaced or written to."""
 
@@ -62,6 +63,7 @@ class Mesh:
         if creases is not None:
             self._read_creases(creases)
         self.subdivision: Optional[dict[str, Any]] = None if subdivision is None else dict(subdivision)
+        self.warnings: list[str] = []
         self._collect()
 
     def _read_attribute(self, values: Any, indices: Any, name: str, width: int) -> tuple[Optional[Array], Optional[Array]]:
@@ -127,12 +129,16 @@ class Mesh:
         for name in ("uvs", "uv_indices", "normals", "normal_indices", "tangents", "creases", "sharpness"):
             setattr(mesh, name, arrays.get(name))
         mesh.subdivision = None
+        mesh.warnings = []
         return mesh
 
     @classmethod
     def load(cls, file: Union[str, os.PathLike[str]], uv_set: int = 0) -> Mesh:
         """Reads .obj, .ply, .gltf, .glb or .fbx. uv_set: of glTF and FBX, from 0."""
-        return cls._from_arrays(_relief.load_mesh(os.fspath(file), uv_set))
+        arrays, warnings = _relief.load_mesh(os.fspath(file), uv_set)
+        mesh = cls._from_arrays(arrays)
+        mesh.warnings = warnings
+        return mesh
 
     def save(self, file: Union[str, os.PathLike[str]]) -> None:
         """Writes .obj or binary .ply: faces, and uvs; the file is replaced atomically."""

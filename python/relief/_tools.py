@@ -42,18 +42,25 @@ def inspect(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, 
     source: a Scene, a Mesh, a Displacement or an array of texels, or the file of one. mesh: what a map is for.
     settings: of a scene, those of render(), which its cost is estimated for."""
     if isinstance(source, Mesh):
-        return _relief.inspect_mesh(source._collect())
+        return _add_warnings(_relief.inspect_mesh(source._collect()), source)
     if isinstance(source, Scene):
         return _relief.inspect_scene(source._parse(), settings)
     if is_map(source):
         displacement = as_displacement(source)
         polygons = Mesh.load(mesh) if isinstance(mesh, (str, os.PathLike)) else mesh
         is_declared = any(key in displacement for key in CONVENTION)
-        return _relief.inspect_map(parse_map(displacement), is_declared, polygons._collect() if polygons else None)
+        said = _relief.inspect_map(parse_map(displacement), is_declared, polygons._collect() if polygons else None)
+        return _add_warnings(said, polygons, "mesh: ") if polygons else said
     path = os.fspath(source)
     if _relief.is_mesh_file(path):
         return inspect(Mesh.load(path))
     return _relief.inspect_scene(_relief.load_scene(path), settings)
+
+
+def _add_warnings(said: dict[str, Any], mesh: Mesh, prefix: str = "") -> dict[str, Any]:
+    """Puts those of the mesh before the other findings."""
+    said["findings"][:0] = [{"severity": "warning", "code": "W-READ", "text": prefix + text} for text in mesh.warnings]
+    return said
 
 
 def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, level: int = 5,

@@ -119,14 +119,16 @@ nb::dict displace(const ParsedScene& parsed, int level) {
     return make_mesh_arrays(std::move(mesh));
 }
 
-nb::dict load_mesh_arrays(const std::string& file, int uv_set) {
+/// Arrays, and warnings.
+nb::tuple load_mesh_arrays(const std::string& file, int uv_set) {
     Mesh mesh;
+    std::vector<std::string> warnings;
     {
         const GateVisit visit;
         const nb::gil_scoped_release release;
-        mesh = load_mesh(file, {.uv_set = uv_set, .reader = {}});
+        mesh = load_mesh(file, {.uv_set = uv_set, .reader = {}}, warnings);
     }
-    return make_mesh_arrays(std::move(mesh));
+    return nb::make_tuple(make_mesh_arrays(std::move(mesh)), warnings);
 }
 
 void write_mesh_arrays(const nb::dict& arrays, const std::string& file) {

@@ -1,4 +1,5 @@
 """Scenes from objects and arrays are what their files say."""
+import base64
 import json
 import os
 import pathlib
@@ -185,6 +186,27 @@ class MeshTest(unittest.TestCase):
         np.testing.assert_array_equal(a.sizes, b.sizes)
         self.assertEqual([list(face) for face in a.faces], faces)
         self.assertEqual(relief.Mesh(points, np.array([[0, 1, 2]])).faces.shape, (1, 3))
+
+    def test_what_of_a_file_is_not_read_is_told(self):
+        data = np.concatenate([np.eye(3).reshape(-1), [0, 0, 1, 0, 0, 1]]).astype(np.float32).tobytes()
+        views = [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24}]
+        document = {"asset": {"version": "2.0"}, "nodes": [{"name": "body", "mesh": 0, "skin": 0}], "skins": [{"joints": [0]}],
+                    "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}}]}], "bufferViews": views,
+                    "accessors": [{"bufferView": k, "componentType": 5126, "count": 3, "type": f"VEC{3 - k}"} for k in (0, 1)],
+                    "scenes": [{"nodes": [0]}], "scene": 0,
+                    "buffers": [{"byteLength": 60, "uri": "data:;base64," + base64.b64encode(data).decode()}]}
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "skinned.gltf"
+            file.write_text(json.dumps(document))
+            mesh = relief.Mesh.load(file)
+            self.assertEqual(len(mesh.warnings), 1)
+            self.assertIn("node 'body' would be bent by a skin", mesh.warnings[0])
+            self.assertEqual(relief.Scene.from_mesh(file).validate(), mesh.warnings)
+            first = {"severity": "warning", "code": "W-READ", "text": mesh.warnings[0]}
+            self.assertEqual(relief.inspect(file)["findings"][0], first)
+            of_map = relief.inspect(np.full((4, 4, 3), 0.1, np.float32), mesh=file)["findings"]
+            self.assertIn({**first, "text": "mesh: " + first["text"]}, of_map)
+        self.assertEqual(scenes.make_plane().warnings, [])
 
     def test_arrays_of_the_right_type_are_kept(self):
         points, faces = np.zeros((4, 3), np.float32), np.array([[0, 1, 2, 3]], np.uint32)

@@ -142,6 +142,9 @@ TEST_F(GltfAnimations, warn_of_skins_which_are_not_read) {
     write("walk.glb", document_.make_glb());
     EXPECT_HAS(load_mesh_scene(folder_ / "walk.glb", {}).warnings.at(0),
                "node 'body' would be bent by a skin");
+    warnings.clear();
+    load_mesh(folder_ / "walk.glb", {}, warnings);
+    EXPECT_EQ(warnings.size(), 1u);
     write("s.json", R"({"objects": [{"mesh": "a"}, {"mesh": "b"}], "meshes": {"b": {"file": "walk.glb"},
         "a": {"file": "walk.glb", "animation": "go", "time": {"keys": [[0, 0], [8, 1]]}}}})");
     Shot shot(folder_ / "s.json");

@@ -1,6 +1,4 @@
-// The kind of file decides who reads it.
-#include "io/mesh/mesh_reader.h"
-
+// load_mesh: the kind of file decides who reads it.
 #include <algorithm>
 #include <array>
 
@@ -57,11 +55,11 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
     std::vector<std::string> untold; // the caller asks for the mesh alone
-    return read_mesh_file(file, options, untold);
+    return load_mesh(file, options, untold);
 }
 
-Mesh read_mesh_file(const std::filesystem::path& file, const MeshReadOptions& options,
-                    std::vector<std::string>& warnings) {
+Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options,
+               std::vector<std::string>& warnings) {
     require_file(file);
     refuse_foreign_file(file);
     if (!is_mesh_file(file)) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "io/mesh/mesh_reader.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/displacement_reader.h"
 #include "io/scene/frame_scene.h"
@@ -109,7 +108,7 @@ Mesh make_map_plane() {
 
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options) {
     AssetCache assets("");
-    Scene scene = make_clay_scene(read_mesh_file(mesh, {.reader = options.reader}, assets.warnings()));
+    Scene scene = make_clay_scene(load_mesh(mesh, {.reader = options.reader}, assets.warnings()));
     Subdivision& subdivision = scene.meshes.front().subdivision;
     if (options.subdivision) subdivision.scheme = parse_word<SubdivisionScheme>(*options.subdivision);
     if (options.subdivision_level) subdivision.level = *options.subdivision_level;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "io/mesh/mesh_reader.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/blend.h"
 #include "relief/error.h"
@@ -67,7 +66,7 @@ std::vector<MapTile> AssetCache::load_blend(const SequenceFiles& files) {
 
 Mesh AssetCache::read_polygons(const std::string& file, const MeshReadOptions& options) {
     std::vector<std::string> noticed;
-    Mesh mesh = read_mesh_file(resolve(file), options, noticed);
+    Mesh mesh = load_mesh(resolve(file), options, noticed);
     for (std::string& warning : noticed)
         if (told_of_meshes_.insert(warning).second) warnings_.push_back(std::move(warning));
     return mesh;
