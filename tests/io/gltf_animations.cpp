@@ -153,6 +153,20 @@ TEST_F(GltfAnimations, warn_of_skins_which_are_not_read) {
     EXPECT_EQ(shot.update(3.5).scene->warnings.size(), 1u) << "the same one";
 }
 
+TEST_F(GltfAnimations, warn_of_skins_in_each_frame_of_files_that_are_kept) {
+    document_.json["skins"] = {{{"joints", {0}}}};
+    document_.json["nodes"][1]["skin"] = 0;
+    for (const char* name : {"body.01.glb", "body.02.glb"}) write(name, document_.make_glb());
+    write("s.json", R"({"camera": {"shutter": [0, 0.5]}, "objects": [{"mesh": "a"}],
+        "meshes": {"a": {"file": "body.##.glb"}}})");
+    Shot shot(folder_ / "s.json");
+    EXPECT_HAS(shot.load(1).warnings.at(0), "body.01.glb: node 1 would be bent by a skin");
+    EXPECT_EQ(shot.update(1.5).scene->warnings.size(), 2u);
+    const Scene second = shot.load(2);
+    ASSERT_EQ(second.warnings.size(), 1u) << "of a file that the shutter of frame 1 saw";
+    EXPECT_HAS(second.warnings[0], "body.02.glb: node 1 would be bent by a skin");
+}
+
 TEST_F(GltfAnimations, follow_the_keys_of_a_scene) {
     add_channel(0, "translation", add_times({0, 1}), document_.add_floats("VEC3", {0, 0, 0, 8, 0, 0}));
     write("walk.glb", document_.make_glb());

@@ -71,6 +71,11 @@ class AssetCache {
 
     /// What was noticed while reading, in order.
     std::vector<std::string>& warnings() { return warnings_; }
+    /// None of these is told; those of meshes are when they are met again.
+    void drop_warnings() {
+        for (const std::string& warning : warnings_) told_of_meshes_.erase(warning);
+        warnings_.clear();
+    }
 
   private:
     std::shared_ptr<const Texture> find_given(const std::string& file) const;
@@ -81,7 +86,8 @@ class AssetCache {
 
     const SequenceFiles* find_blend(const std::string& file) const;
     std::vector<MapTile> load_blend(const SequenceFiles& files);
-    /// Each warning of a mesh is told once.
+    /// Adds what was noticed of a mesh, each warning once.
+    void warn_of_mesh(const std::vector<std::string>& noticed);
     Mesh read_polygons(const std::string& file, const MeshReadOptions& options);
     std::shared_ptr<const Mesh> load_kept(const std::string& file, const MeshReadOptions& options,
                                           int64_t frame);
@@ -90,6 +96,7 @@ class AssetCache {
     template <class Value> struct Kept {
         std::shared_ptr<const Value> value;
         int64_t frame = 0;
+        std::vector<std::string> warnings = {}; ///< of its file, told again by each reading of the scene
     };
     /// Of a blend: nobody but its scene needs it.
     static constexpr int64_t kNoFrame = std::numeric_limits<int64_t>::min();

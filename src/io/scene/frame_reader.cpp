@@ -146,7 +146,7 @@ uint64_t FrameReader::hash_shutter(const State& state, uint64_t hash, double fra
     all.add(hashes);
     for (const ScenePart& part : moving_)
         all.add(nlohmann::json(trim_keys(*part.value, times.front(), times.back())).dump());
-    assets_.warnings().clear();
+    assets_.drop_warnings();
     return all.value();
 }
 

@@ -30,8 +30,8 @@ void require_same_tiles(const SequenceFiles& files, const std::vector<MapTile>& 
 
 void AssetCache::forget(int64_t first, int64_t last) {
     const auto is_idle = [&](const auto& entry) {
-        const auto& [value, frame] = entry.second;
-        return value.use_count() <= 1 && (frame < first || frame > last);
+        const auto& kept = entry.second;
+        return kept.value.use_count() <= 1 && (kept.frame < first || kept.frame > last);
     };
     std::erase_if(textures_, is_idle);
     std::erase_if(meshes_, is_idle);
@@ -64,11 +64,15 @@ std::vector<MapTile> AssetCache::load_blend(const SequenceFiles& files) {
     return tiles;
 }
 
+void AssetCache::warn_of_mesh(const std::vector<std::string>& noticed) {
+    for (const std::string& warning : noticed)
+        if (told_of_meshes_.insert(warning).second) warnings_.push_back(warning);
+}
+
 Mesh AssetCache::read_polygons(const std::string& file, const MeshReadOptions& options) {
     std::vector<std::string> noticed;
     Mesh mesh = load_mesh(resolve(file), options, noticed);
-    for (std::string& warning : noticed)
-        if (told_of_meshes_.insert(warning).second) warnings_.push_back(std::move(warning));
+    warn_of_mesh(noticed);
     return mesh;
 }
 
@@ -77,10 +81,12 @@ std::shared_ptr<const Mesh> AssetCache::load_kept(const std::string& file, const
     Kept<Mesh>& kept = meshes_[make_key(file, options)];
     kept.frame = frame;
     if (!kept.value) {
-        auto mesh = std::make_shared<const Mesh>(read_polygons(file, options));
+        std::vector<std::string> noticed;
+        auto mesh = std::make_shared<const Mesh>(load_mesh(resolve(file), options, noticed));
         validate_mesh(*mesh);
-        kept.value = std::move(mesh);
+        kept.value = std::move(mesh), kept.warnings = std::move(noticed);
     }
+    warn_of_mesh(kept.warnings);
     return kept.value;
 }
 
