@@ -1,6 +1,7 @@
 #include "viewer/shot_reader.h"
 
 #include <memory>
+#include <system_error>
 #include <utility>
 
 namespace relief::viewer {
@@ -21,8 +22,23 @@ SharedMeshes take_meshes(std::vector<Mesh> meshes, const SharedMeshes& before) {
 
 } // namespace
 
+/// Of those that a frame reads, before it does.
+void ShotReader::drop_rewritten_files(int frame) {
+    std::map<std::filesystem::path, std::filesystem::file_time_type> now;
+    bool has_changed = false;
+    for (const std::filesystem::path& file : shot_.list_files(frame)) {
+        std::error_code code;
+        now[file] = std::filesystem::last_write_time(file, code);
+        const auto known = times_.find(file);
+        has_changed |= known != times_.end() && known->second != now[file];
+    }
+    if (has_changed) shot_ = Shot(file_, reader_), times_.clear();
+    times_.merge(now);
+}
+
 ShotFrame ShotReader::read(int frame, uint64_t known) {
-    if (shot_.is_animated()) shot_.list_files(frame); // update() takes the last file where there is none
+    // Also since update() takes the last file where there is none.
+    if (shot_.is_animated()) drop_rewritten_files(frame);
     SceneUpdate update = shot_.update(frame);
     if (update.scene) {
         last_.meshes = take_meshes(std::exchange(update.scene->meshes, {}), last_.meshes);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -25,17 +26,23 @@ class ShotReader {
   public:
     /// Throws as Shot.
     explicit ShotReader(const std::filesystem::path& file, const MeshReaderSettings& reader = {})
-        : shot_(file, reader) {}
+        : file_(file), reader_(reader), shot_(file, reader) {}
 
     const std::vector<int>& frames() const { return shot_.frames(); }
     bool is_animated() const { return shot_.is_animated(); }
 
-    /// `known`: content that the caller has. Throws as Shot::update, and as Shot::list_files for a numbered
-    /// file that is not there, before the first one and after the last too.
+    /// `known`: content that the caller has. Files that were written since a frame read them are read again.
+    /// Throws as Shot::update, and as Shot::list_files for a numbered file that is not there, before the
+    /// first one and after the last too.
     ShotFrame read(int frame, uint64_t known = 0);
 
   private:
+    void drop_rewritten_files(int frame);
+
+    std::filesystem::path file_;
+    MeshReaderSettings reader_;
     Shot shot_;
+    std::map<std::filesystem::path, std::filesystem::file_time_type> times_; ///< of files as they were read
     SharedScene last_;
     uint64_t content_ = 0;
 };

@@ -373,6 +373,20 @@ TEST_F(FrameTest, a_frame_that_is_being_read_is_not_shown_when_the_one_before_is
     EXPECT_EQ(bench_->frame(), 1);
 }
 
+TEST_F(FrameTest, a_map_that_was_rewritten_while_its_frame_was_left_is_read_again) {
+    open_sequence();
+    show(2);
+    show(3);
+    Displacement next = map();
+    auto texture = std::make_shared<Texture>(*next.tiles[0].texture);
+    for (uint32_t x = 0; x < 64; ++x) write_texel(*texture, x, 12, {0, 0, 0.5f});
+    next.tiles[0].texture = texture;
+    write_map(next, folder_ / "maps" / "bumps.0002.exr", MapSamples::float32);
+    show(2);
+    EXPECT_EQ(read_texel(*map().tiles[0].texture, 20, 12).z, 0.5f);
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(2));
+}
+
 TEST_F(FrameTest, a_scene_without_keys_has_no_frames) {
     open_scene();
     EXPECT_FALSE(bench_->frame());
