@@ -246,6 +246,17 @@ template <size_t kCount> struct LaneTable {
 using Lanes8 = Lanes<8>;
 using Lanes4 = Lanes<4>;
 
+/// The first half of the lanes, and the others.
+template <size_t W> HWY_INLINE void split(const Lanes<W>& all, Lanes<W / 2>& low, Lanes<W / 2>& high) {
+    if constexpr (Lanes<W>::kParts == Lanes<W / 2>::kParts) {
+        const typename Lanes<W / 2>::D d;
+        low.part[0] = hn::LowerHalf(d, all.part[0]), high.part[0] = hn::UpperHalf(d, all.part[0]);
+    } else {
+        for (size_t p = 0; p < Lanes<W / 2>::kParts; ++p)
+            low.part[p] = all.part[p], high.part[p] = all.part[Lanes<W / 2>::kParts + p];
+    }
+}
+
 /// Four floats per lane, lane after lane.
 struct LaneQuads {
     alignas(64) float lane[16][4];
@@ -277,6 +288,14 @@ using Float = Lanes4;
 #include "formulas/displace.h"
 #undef RELIEF_LANES
 } // namespace texel
+
+/// The same formulas over the channels of two texels.
+namespace texel_pair {
+using Float = Lanes8;
+#define RELIEF_LANES
+#include "formulas/displace.h"
+#undef RELIEF_LANES
+} // namespace texel_pair
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

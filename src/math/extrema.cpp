@@ -29,16 +29,23 @@ HWY_INLINE void visit_registers(D d, const TexelRows<Value>& texels, Extend exte
     }
 }
 
-/// Reduces lanes to the minimum and maximum of each channel.
+/// Reduces lanes to one of each channel.
+template <class D, class V, class Reduce>
+HWY_INLINE void join_lanes(D d, V values, Reduce reduce, hn::TFromD<D> (&joined)[kChannels]) {
+    if constexpr (hn::MaxLanes(D()) > kChannels) {
+        const hn::Half<D> half;
+        join_lanes(half, reduce(hn::LowerHalf(half, values), hn::UpperHalf(half, values)), reduce, joined);
+    } else {
+        hn::StoreU(values, d, joined);
+    }
+}
+
 template <class D, class V, class T = hn::TFromD<D>>
 HWY_INLINE void join_lanes(D d, V low, V high, T (&least)[kChannels], T (&greatest)[kChannels]) {
-    alignas(64) T lows[kMostLanes], highs[kMostLanes];
-    hn::Store(low, d, lows), hn::Store(high, d, highs);
-    std::copy(lows, lows + kChannels, least), std::copy(highs, highs + kChannels, greatest);
-    for (size_t k = kChannels; k < hn::Lanes(d); ++k) {
-        least[k % kChannels] = std::min(least[k % kChannels], lows[k]);
-        greatest[k % kChannels] = std::max(greatest[k % kChannels], highs[k]);
-    }
+    join_lanes(
+        d, low, [](auto a, auto b) HWY_ATTR { return hn::Min(a, b); }, least);
+    join_lanes(
+        d, high, [](auto a, auto b) HWY_ATTR { return hn::Max(a, b); }, greatest);
 }
 
 /// Maps the bits of halves to integers in the same order; an involution.

@@ -23,6 +23,29 @@ HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
     return result;
 }
 
+/// Two texels, one after the other. A template, so that each instruction set compiles its own branch only.
+template <class Pair = Lanes8>
+HWY_INLINE Pair load_texel_pair(const Texture& texture, size_t first, size_t second) {
+    Pair pair;
+    if constexpr (Pair::kParts == 1) {
+        const typename Pair::D d;
+        const hn::Rebind<hwy::float16_t, typename Pair::D> d16;
+        const hn::Half<typename Pair::D> half;
+        const hn::Half<decltype(d16)> half16;
+        const auto* halves = reinterpret_cast<const hwy::float16_t*>(texture.halves.data());
+        const float* floats = texture.floats.data();
+        pair.part[0] =
+            texture.floats.empty()
+                ? hn::PromoteTo(d, hn::Combine(d16, hn::LoadU(half16, halves + 4 * second),
+                                               hn::LoadU(half16, halves + 4 * first)))
+                : hn::Combine(d, hn::LoadU(half, floats + 4 * second), hn::LoadU(half, floats + 4 * first));
+    } else {
+        pair.part[0] = load_texel(texture, first).part[0];
+        pair.part[1] = load_texel(texture, second).part[0];
+    }
+    return pair;
+}
+
 /// Red, green and blue of sixteen texels, one after another in memory, the first at `index`.
 HWY_INLINE void load_texels(const Texture& texture, size_t index, Lanes16 (&color)[3]) {
     using D = Lanes16::D;

@@ -22,16 +22,16 @@ template <size_t N>
 LineMeasure measure_line(const std::array<Vec3f, N>& line, double cells, const Affine& world_from_object) {
     LineMeasure measure;
     measure.cap = std::clamp(int(std::ceil(std::log2(std::max(cells, 1.0)))), 0, kMaxLevel);
-    Box box;
     std::array<Vec3f, N> points;
-    for (size_t k = 0; k < N; ++k) {
-        points[k] = transform_point(world_from_object, line[k]);
-        box.extend(points[k]);
-        if (k > 0) measure.length += length(points[k] - points[k - 1]);
-    }
+    for (size_t k = 0; k < N; ++k) points[k] = transform_point(world_from_object, line[k]);
+    std::array<float, N> steps{}, spokes;
+    for (size_t k = 1; k < N; ++k) steps[k] = length(points[k] - points[k - 1]);
+    Box box;
+    for (const Vec3f& point : points) box.extend(point);
     measure.center = box.center();
-    for (const Vec3f& point : points)
-        measure.radius = std::max(measure.radius, double(length(point - measure.center)));
+    for (size_t k = 0; k < N; ++k) spokes[k] = length(points[k] - measure.center);
+    for (const float step : steps) measure.length += step;
+    for (const float spoke : spokes) measure.radius = std::max(measure.radius, double(spoke));
     return measure;
 }
 
@@ -95,7 +95,7 @@ PatchLevels choose_levels(const PatchLines& lines, const LevelFieldConfig& confi
 
 std::vector<PatchLines> measure_lines(const Surface& surface, const Affine& world_from_object) {
     std::vector<PatchLines> lines(surface.has_displacement ? surface.patch_count() : 0);
-    parallel_for("measure lines", lines.size(), 256, [&](size_t begin, size_t end) {
+    parallel_for("measure lines", lines.size(), 64, [&](size_t begin, size_t end) {
         for (size_t patch = begin; patch < end; ++patch)
             lines[patch] = measure_patch(surface, uint32_t(patch), world_from_object);
     });

@@ -54,12 +54,14 @@ CornerFrame make_corner(const VertexData& vertex) {
     return corner;
 }
 
-CornerFrame blend_line(const CornerFrame& a, const CornerFrame& b, double s) {
+/// Without frames where the map does not displace through them.
+CornerFrame blend_line(const CornerFrame& a, const CornerFrame& b, double s, bool is_tangent) {
     const auto blend = [s](double x, double y) { return x * (1 - s) + y * s; };
     CornerFrame corner;
     for (int axis = 0; axis < 3; ++axis) {
         corner.position[axis] = blend(a.position[axis], b.position[axis]);
-        for (int k = 0; k < 3; ++k) corner.frame[axis][k] = blend(a.frame[axis][k], b.frame[axis][k]);
+        for (int k = 0; k < 3 && is_tangent; ++k)
+            corner.frame[axis][k] = blend(a.frame[axis][k], b.frame[axis][k]);
     }
     for (int k = 0; k < 2; ++k) corner.uv[k] = blend(a.uv[k], b.uv[k]);
     return corner;
@@ -155,27 +157,38 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
     return result;
 }
 
+/// Of one coordinate over `corners` of p, or of `base` where that is not null, plus D or F D.
+Interval find_hull(const CoordinateRanges* base, std::span<const CornerFrame> corners, int axis,
+                   const std::array<Interval, 3>& d, bool is_tangent) {
+    Interval hull;
+    if (base) hull = {(*base)[size_t(axis)][0], (*base)[size_t(axis)][1]};
+    if (!is_tangent) {
+        // Rounding keeps the order, so that the sums may be taken last.
+        for (size_t k = 0; k < corners.size() && !base; ++k) hull.extend(corners[k].position[axis]);
+        return hull + d[axis];
+    }
+    Interval all;
+    for (const CornerFrame& corner : corners) {
+        Interval moved = base ? hull : Interval{corner.position[axis], corner.position[axis]};
+        for (int k = 0; k < 3; ++k) moved = moved + d[k] * corner.frame[axis][k];
+        all.extend(moved.low), all.extend(moved.high);
+    }
+    return all;
+}
+
 /// Extends `bounds` by the hull over `corners` of p + F D, or of `base` plus F D where that is not null.
 void extend_by_hull(std::array<Interval, 3>& bounds, const Footprint& footprint, const CoordinateRanges* base,
                     std::span<const CornerFrame> corners) {
     Interval u, v;
     for (const CornerFrame& corner : corners) u.extend(corner.uv[0]), v.extend(corner.uv[1]);
     const std::array<Interval, 3> d = bound_displacement(footprint, u, v);
+    // Blends of frames err by 8 units of their largest entry, not of the value.
+    double size = 0;
+    for (const Interval& channel : d) size += channel.size() * footprint.map->longest_axis;
+    // A cubic is blended twice, each time with 6 units.
+    const double slack = 16 * kUnit * (footprint.largest_position + size) + kUnderflow;
     for (int axis = 0; axis < 3; ++axis) {
-        Interval hull;
-        double size = 0;
-        for (const CornerFrame& corner : corners) {
-            Interval moved{corner.position[axis], corner.position[axis]};
-            if (base) moved = {(*base)[size_t(axis)][0], (*base)[size_t(axis)][1]};
-            if (!footprint.map->is_tangent) moved = moved + d[axis];
-            for (int k = 0; k < 3 && footprint.map->is_tangent; ++k)
-                moved = moved + d[k] * corner.frame[axis][k];
-            hull.extend(moved.low), hull.extend(moved.high);
-        }
-        // Blends of frames err by 8 units of their largest entry, not of the value.
-        for (const Interval& channel : d) size += channel.size() * footprint.map->longest_axis;
-        // A cubic is blended twice, each time with 6 units.
-        const double slack = 16 * kUnit * (footprint.largest_position + size) + kUnderflow;
+        const Interval hull = find_hull(base, corners, axis, d, footprint.map->is_tangent);
         bounds[axis].extend(hull.low - slack), bounds[axis].extend(hull.high + slack);
     }
 }
@@ -204,10 +217,14 @@ void extend_by_part(std::array<Interval, 3>& bounds, const PatchBase& base,
                     const std::array<double, 4>& u0_v0_u1_v1) {
     const auto [u0, v0, u1, v1] = u0_v0_u1_v1;
     const std::array<CornerFrame, 4>& corners = base.corners;
+    const bool is_tangent = base.footprint.map->is_tangent;
     const auto blend = [&](double u, double v) {
-        return blend_line(blend_line(corners[0], corners[1], u), blend_line(corners[3], corners[2], u), v);
+        return blend_line(blend_line(corners[0], corners[1], u, is_tangent),
+                          blend_line(corners[3], corners[2], u, is_tangent), v, is_tangent);
     };
-    const std::array<CornerFrame, 4> part = {blend(u0, v0), blend(u1, v0), blend(u1, v1), blend(u0, v1)};
+    const bool is_all = u0_v0_u1_v1 == std::array<double, 4>{0, 0, 1, 1};
+    const std::array<CornerFrame, 4> part =
+        is_all ? corners : std::array{blend(u0, v0), blend(u1, v0), blend(u1, v1), blend(u0, v1)};
     if (!base.bicubic) return extend_by_hull(bounds, base.footprint, nullptr, part);
     const CoordinateRanges ranges = bound_part(*base.bicubic, u0_v0_u1_v1);
     extend_by_hull(bounds, base.footprint, &ranges, part);
@@ -220,8 +237,8 @@ void extend_by_line(std::array<Interval, 3>& bounds, const PatchSamples& samples
     footprint.include(samples.first_of_line(k)), footprint.include(samples.second_of_line(k));
     const CornerFrame first = make_corner(samples.first_of_line(k)),
                       second = make_corner(samples.second_of_line(k));
-    const std::array<CornerFrame, 2> ends = {blend_line(first, second, s0_s1[0]),
-                                             blend_line(first, second, s0_s1[1])};
+    const std::array<CornerFrame, 2> ends = {blend_line(first, second, s0_s1[0], map.is_tangent),
+                                             blend_line(first, second, s0_s1[1], map.is_tangent)};
     if (!samples.base()) return extend_by_hull(bounds, footprint, nullptr, ends);
     const std::array<Vec3f, 2>& inner = samples.line_controls(k);
     for (const Vec3f& control : inner) footprint.include(control);

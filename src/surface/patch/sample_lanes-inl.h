@@ -168,24 +168,35 @@ HWY_NOINLINE inline void fetch_spline_raw(const DisplacementMap& map, const Text
     weigh_lanes(place.fx, along), weigh_lanes(place.fy, across);
     // Of large uvs, whose fraction is lost: within integers, as the device has them.
     constexpr int32_t kMost = 1 << 30;
+    const auto is_inside_at = [&](int32_t x, int32_t y) {
+        return x >= 1 && x + 2 < width && y >= 1 && y + 2 < height;
+    };
     for (int lane = 0; lane < 16; ++lane) {
         column[lane] = std::clamp(column[lane], -kMost, kMost),
         row[lane] = std::clamp(row[lane], -kMost, kMost);
-        const bool is_inside =
-            column[lane] >= 1 && column[lane] + 2 < width && row[lane] >= 1 && row[lane] + 2 < height;
+        bool is_inside = is_inside_at(column[lane], row[lane]);
+        if (!is_inside && map.wrap == WrapMode::repeat) {
+            // Once for all sixteen texels, but at the borders of the map.
+            column[lane] = wrap_index(column[lane], width, map.wrap);
+            row[lane] = wrap_index(row[lane], height, map.wrap);
+            is_inside = is_inside_at(column[lane], row[lane]);
+        }
         size_t columns[4], rows[4];
         for (int k = 0; k < 4; ++k) {
             const int32_t x = column[lane] + k - 1, y = row[lane] + k - 1;
             columns[k] = size_t(is_inside ? x : wrap_index(x, width, map.wrap));
             rows[k] = size_t(is_inside ? y : wrap_index(y, height, map.wrap)) * size_t(width);
         }
-        const texel::CubicWeights weights = broadcast_weights(along.lane[lane]);
+        const texel_pair::CubicWeights weights = {Lanes8(along.lane[lane][0]), Lanes8(along.lane[lane][1]),
+                                                  Lanes8(along.lane[lane][2]), Lanes8(along.lane[lane][3])};
         Lanes4 point[4];
-        for (int k = 0; k < 4; ++k)
-            point[k] = texel::blend_cubic(load_texel(texture, rows[k] + columns[0]),
-                                          load_texel(texture, rows[k] + columns[1]),
-                                          load_texel(texture, rows[k] + columns[2]),
-                                          load_texel(texture, rows[k] + columns[3]), weights);
+        for (int k = 0; k < 4; k += 2) {
+            const auto load = [&](int column) HWY_ATTR {
+                return load_texel_pair(texture, rows[k] + columns[column], rows[k + 1] + columns[column]);
+            };
+            split(texel_pair::blend_cubic(load(0), load(1), load(2), load(3), weights), point[k],
+                  point[k + 1]);
+        }
         texel::blend_cubic(point[0], point[1], point[2], point[3], broadcast_weights(across.lane[lane]))
             .store_unaligned(values.lane[lane]);
     }
@@ -316,25 +327,36 @@ HWY_INLINE void evaluate_samples(const Surface& surface, const MapImage& image, 
     displace<kSpacing>(surface, image, value, position);
 }
 
+/// Sixteen samples of lines at s, whose ends' values, and controls of a bicubic base, are functions of
+/// (value) and of (which, axis).
+template <Spacing kSpacing, class First, class Second, class Control>
+HWY_INLINE void evaluate_between(const Surface& surface, const MapImage& image, const First& first,
+                                 const Second& second, const Control& control, const Lanes16& s,
+                                 Lanes16 (&position)[3]) {
+    const int values = surface.map.is_tangent ? kValueCount : kFrame;
+    const bool is_bicubic = !surface.controls.empty();
+    Lanes16 value[kValueCount];
+    for (int k = is_bicubic ? kUv : 0; k < values; ++k) value[k] = wide::blend(first(k), second(k), s);
+    if (is_bicubic) {
+        const wide::CubicWeights weights = wide::weigh_cubic(s);
+        for (int axis = 0; axis < 3; ++axis)
+            value[axis] =
+                wide::blend_cubic(first(axis), control(0, axis), control(1, axis), second(axis), weights);
+    }
+    displace<kSpacing>(surface, image, value, position);
+}
+
 /// Sixteen samples of an edge's line from copy `mip` of the map, at s; `controls`: of a bicubic base.
 template <Spacing kSpacing>
 HWY_INLINE void evaluate_line(const Surface& surface, const Surface::EdgeLine& line,
                               const std::array<Vec3f, 2>& controls, uint32_t mip, const Lanes16& s,
                               Lanes16 (&position)[3]) {
     const VertexValues first = read_vertex(surface, line.first), second = read_vertex(surface, line.second);
-    const int values = surface.map.is_tangent ? kValueCount : kFrame;
-    const bool is_bicubic = !surface.controls.empty();
-    Lanes16 value[kValueCount];
-    for (int k = is_bicubic ? kUv : 0; k < values; ++k)
-        value[k] = wide::blend(Lanes16(first.value[k]), Lanes16(second.value[k]), s);
-    if (is_bicubic) {
-        const wide::CubicWeights weights = wide::weigh_cubic(s);
-        for (int axis = 0; axis < 3; ++axis)
-            value[axis] = wide::blend_cubic(
-                Lanes16(first.value[axis]), Lanes16(get_component(controls[0], axis)),
-                Lanes16(get_component(controls[1], axis)), Lanes16(second.value[axis]), weights);
-    }
-    displace<kSpacing>(surface, {surface.tile(line.first), mip}, value, position);
+    evaluate_between<kSpacing>(
+        surface, {surface.tile(line.first), mip}, [&](int k) HWY_ATTR { return Lanes16(first.value[k]); },
+        [&](int k) HWY_ATTR { return Lanes16(second.value[k]); },
+        [&](size_t which, int axis) HWY_ATTR { return Lanes16(get_component(controls[which], axis)); }, s,
+        position);
 }
 
 /// A surface whose samples need no exception: displaced by a real tile, and inside the map everywhere.
