@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,7 +58,9 @@ int run_plan(PlanOptions& options, const CLI::App& verb) {
     if (options.folder.empty())
         throw Error(ErrorKind::usage, {"no job folder given", "", "relief farm plan SCENE.json -o JOB"});
     options.words = collect_words(verb);
-    const FarmJob job = plan_job(std::move(options));
+    const std::optional<FarmJob> planned = plan_job(std::move(options));
+    if (!planned) return kExitWarnings;
+    const FarmJob& job = *planned;
     const JobEstimate& e = job.estimate;
     fmt::print("planned {} tasks: {} frames x {} tiles x {} ranges of samples, {} files\n", job.task_count(),
                job.frames.size(), job.tiles, job.passes, job.files.size());

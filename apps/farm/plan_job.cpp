@@ -1,6 +1,7 @@
 #include "farm/plan_job.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <map>
 #include <set>
@@ -13,6 +14,7 @@
 #include "base/machine.h"
 #include "cli/picture_settings.h"
 #include "cli/render_motion.h"
+#include "cli/render_warnings.h"
 #include "common/inputs.h"
 #include "common/mesh_reader.h"
 #include "common/progress.h"
@@ -100,9 +102,17 @@ void keep_inputs(const std::set<fs::path>& files, const FarmJob& job) {
             refuse_output(picture);
 }
 
-JobEstimate estimate_cost(const Scene& scene, const RenderSettings& settings, const FarmJob& job,
-                          WorkProgress& progress) {
-    const Inspection inspection = inspect_scene(scene, settings, progress.part(kFilesRead, 1));
+/// What a render warns of. Throws Error{bad_input} for what it refuses.
+std::vector<std::string> collect_warnings(const Inspection& inspection) {
+    std::vector<std::string> warnings;
+    for (const Finding& finding : inspection.findings) {
+        if (finding.code == "E-SCENE") throw Error(ErrorKind::bad_input, {finding.text, "", ""});
+        if (finding.code == "W-READ" || finding.code == "W-SCENE") warnings.push_back(finding.text);
+    }
+    return warnings;
+}
+
+JobEstimate estimate_cost(const Inspection& inspection, const RenderSettings& settings, const FarmJob& job) {
     std::map<std::string, double> numbers;
     for (const Fact& fact : inspection.facts)
         for (const FactNumber& number : fact.numbers)
@@ -121,8 +131,9 @@ JobEstimate estimate_cost(const Scene& scene, const RenderSettings& settings, co
     return estimate;
 }
 
-/// The first frame says how large all are.
-void measure_frame(const RenderOptions& options, Shot& shot, FarmJob& job, WorkProgress& progress) {
+/// The first frame says how large all are. Returns what it is warned of.
+std::vector<std::string> measure_frame(const RenderOptions& options, Shot& shot, FarmJob& job,
+                                       WorkProgress& progress) {
     Scene scene = with_scene_hint(options, [&] { return shot.load(job.frames.front()); });
     if (is_moving(shot, scene.camera)) check_motion(options);
     const RenderSettings settings = prepare_picture(options, scene);
@@ -135,12 +146,22 @@ void measure_frame(const RenderOptions& options, Shot& shot, FarmJob& job, WorkP
     if (job.passes > image.spp)
         refuse_value("--passes", std::to_string(job.passes),
                      fmt::format("possible: there are only {} samples", image.spp));
-    job.estimate = estimate_cost(scene, settings, job, progress);
+    const Inspection inspection = inspect_scene(scene, settings, progress.part(kFilesRead, 1));
+    job.estimate = estimate_cost(inspection, settings, job);
+    return collect_warnings(inspection);
+}
+
+/// True where they stand in the way of the job.
+bool tell_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
+    if (!options.progress.is_quiet || options.is_strict) print_warnings(warnings, false);
+    if (!options.is_strict || warnings.empty()) return false;
+    fmt::print(stderr, "relief: nothing is planned with warnings under --strict\n");
+    return true;
 }
 
 } // namespace
 
-FarmJob plan_job(PlanOptions options) {
+std::optional<FarmJob> plan_job(PlanOptions options) {
     FarmJob job;
     job.folder = fs::absolute(options.folder).lexically_normal();
     job.version = RELIEF_VERSION_STRING;
@@ -164,9 +185,11 @@ FarmJob plan_job(PlanOptions options) {
     const std::set<fs::path> files = list_all_files(shot, job.frames);
     keep_inputs(files, job);
     job.files = describe_files(files, progress);
+    std::vector<std::string> warnings;
     with_io_threads(options.render.settings.device.threads,
-                    [&] { measure_frame(options.render, shot, job, progress); });
+                    [&] { warnings = measure_frame(options.render, shot, job, progress); });
     progress.end_line();
+    if (tell_warnings(warnings, options.render)) return std::nullopt;
     write_job(job);
     folder.keep();
     return job;

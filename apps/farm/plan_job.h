@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct PlanOptions {
     double heartbeat_s = 10;
 };
 
-/// Reads and hashes all files of all frames, measures what the first frame costs, and writes the manifest. Of
-/// a plan that fails nothing is left. Throws Error: usage where the folder is there already, bad_input for a
-/// file of any frame that is missing, failed where the folder cannot be written.
-FarmJob plan_job(PlanOptions options);
+/// Reads and hashes all files of all frames, measures what the first frame costs and prints its warnings, and
+/// writes the manifest. nullopt: there are warnings, and --strict was given. Of a plan that fails nothing is
+/// left. Throws Error: usage where the folder is there already, bad_input for a file of any frame that is
+/// missing, failed where the folder cannot be written.
+std::optional<FarmJob> plan_job(PlanOptions options);
 
 } // namespace relief::cli

@@ -42,6 +42,25 @@ def check_plan(relief, folder):
     expect(run(relief, "farm", "submit", folder / "job", "--partition", "a", code=2).stderr, "--to slurm")
 
 
+def check_strict_plan(relief, folder):
+    """What all tasks would end with is told before there is a job."""
+    for tile in (1001, 1002):
+        (folder / f"bumps.{tile}.png").write_bytes((folder / "bumps.png").read_bytes())
+    shot = json.loads((folder / "shot.json").read_text())
+    shot["displacements"]["bumps"]["file"] = "bumps.1001.png"
+    (folder / "tile.json").write_text(json.dumps(shot))
+    words = ["farm", "plan", folder / "tile.json", "--frames", "1", "--size", "32x18", "--spp", "2", "-o", folder / "warned"]
+    told = run(relief, *words, "--strict", code=6).stderr
+    expect(told, "is one tile of several", "nothing is planned with warnings under --strict")
+    assert not (folder / "warned").exists()
+    expect(run(relief, *words).stderr, "is one tile of several")
+    shot["displacements"]["bumps"].update(file="bumps.png", scale=1e30)
+    (folder / "far.json").write_text(json.dumps(shot))
+    expect(run(relief, "farm", "plan", folder / "far.json", "--frames", "1", *SMALL, "-o", folder / "far", code=3).stderr,
+           "displaces by", "lower the scale")
+    assert not (folder / "far").exists()
+
+
 def check_changed_file(relief, folder):
     job, image = folder / "job", folder / "bumps.0002.png"
     before = image.read_bytes()
@@ -112,6 +131,7 @@ def main():
         folder = pathlib.Path(name)
         write_shot(folder)
         check_plan(relief, folder)
+        check_strict_plan(relief, folder)
         check_changed_file(relief, folder)
         check_other_version(relief, folder)
         check_full_disk(relief, folder)
