@@ -8,6 +8,7 @@
 
 #include "inspect/facts.h"
 #include "math/box.h"
+#include "relief/convert.h"
 #include "scene/face_uvs.h"
 
 namespace relief {
