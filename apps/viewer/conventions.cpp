@@ -1,6 +1,7 @@
 #include "viewer/conventions.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "relief/io.h"
@@ -42,6 +43,13 @@ void set_axis(AxisMap& axes, size_t channel, uint8_t axis, int8_t sign) {
     for (size_t other = 0; other < 3; ++other)
         if (other != channel && axes.axis[other] == axis) std::swap(axes.axis[other], axes.axis[channel]);
     axes.sign[channel] = sign;
+}
+
+std::string name_panels(std::string warning) {
+    constexpr std::string_view kStart = "displacement.";
+    for (size_t at = 0; (at = warning.find(kStart, at)) != std::string::npos;)
+        warning.erase(at, kStart.size());
+    return warning;
 }
 
 } // namespace relief::viewer

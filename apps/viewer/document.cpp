@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <exception>
 #include <string_view>
 #include <system_error>
 
@@ -10,6 +11,7 @@
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
+#include "viewer/conventions.h"
 
 namespace relief::viewer {
 
@@ -25,7 +27,8 @@ MapTile& find_map_tile(Displacement& map, int udim) {
 
 std::vector<std::string> list_doubts(const Scene& scene) {
     std::vector<std::string> texts;
-    for (const Finding& finding : find_doubtful_assumptions(scene)) texts.push_back(finding.text);
+    for (const Finding& finding : find_doubtful_assumptions(scene))
+        texts.push_back(name_panels(finding.text));
     return texts;
 }
 
@@ -149,9 +152,26 @@ void Document::load_environment(const std::filesystem::path& file) {
     if (!scene_.environment) scene_.environment.emplace();
     const Environment before = *scene_.environment;
     scene_.environment->texture = std::move(texture);
+    if (is_mesh_file(input_.file)) place_light();
     changed_.note(before, *scene_.environment);
     changes_.environment = file;
     touch();
+}
+
+void Document::place_light() {
+    Scene lit;
+    lit.objects = scene_.objects, lit.materials = scene_.materials;
+    lit.displacements = scene_.displacements, lit.environment = scene_.environment;
+    lit.meshes = std::move(scene_.meshes);
+    std::exception_ptr error;
+    try {
+        complete_mesh_scene(lit);
+    } catch (...) {
+        error = std::current_exception();
+    }
+    scene_.meshes = std::move(lit.meshes);
+    if (error) std::rethrow_exception(error);
+    scene_.environment = std::move(lit.environment), scene_.lights = std::move(lit.lights);
 }
 
 Texture& Document::paint_tile(size_t displacement, int udim) {
@@ -244,6 +264,9 @@ std::vector<std::filesystem::path> Document::save(const std::filesystem::path& f
                                                   const ImageSettings& image) {
     commit();
     std::vector<std::filesystem::path> written;
+    if (file.extension() != ".json")
+        throw Error(ErrorKind::usage,
+                    {"a scene file has the extension .json", file.string(), file.stem().string() + ".json"});
     std::error_code ignored;
     if (std::filesystem::equivalent(file, input_.file, ignored))
         throw Error(ErrorKind::usage, {"the file that was opened would be written over", file.string(),

@@ -89,7 +89,8 @@ class Document {
     void change_material(size_t index, const std::function<void(Material&)>& change);
     void change_environment(const std::function<void(Environment&)>& change);
     void change_light(size_t index, const std::function<void(Light&)>& change);
-    /// Throws as read_texture.
+    /// With a mesh alone it is the light, placed as load_mesh_scene() does it; the environment of a scene
+    /// keeps its strength and rotation. Throws as read_texture.
     void load_environment(const std::filesystem::path& file);
     /// The camera is no change that needs another session.
     void set_camera(const Camera& camera) { scene_.camera = camera; }
@@ -127,6 +128,7 @@ class Document {
     void put_aside(const Scene& next, FrameStrokes& strokes);
     void take_back(Scene& next, FrameStrokes& strokes);
     void touch();
+    void place_light();
     /// Puts what was painted into the scene.
     void commit();
     /// No file of a map is there, or this document wrote it for that map of that frame. `pattern` holds

@@ -187,7 +187,10 @@ void Interface::draw_explanation() {
 
 /// What was not saved is saved, all of it, or may go.
 bool Interface::settle(EndAnswer answer, const std::filesystem::path& file) {
-    if (answer == EndAnswer::leave) return true;
+    if (answer == EndAnswer::leave) {
+        workbench_.discard();
+        return true;
+    }
     return answer == EndAnswer::save && workbench_.save(file) && !workbench_.has_unsaved();
 }
 
@@ -228,6 +231,7 @@ void Interface::draw() {
     draw_panels();
     draw_timeline_strip();
     draw_line();
+    draw_empty_view(workbench_, area_);
     draw_explanation();
     if (workbench_.is_help_shown()) draw_help(workbench_);
     if (is_asking_)
@@ -237,9 +241,9 @@ void Interface::draw() {
     window_.end_frame();
 }
 
-void Interface::run(ScriptRunner* script, double start) {
+void Interface::run(ScriptRunner* script, double start, bool (*is_terminated)()) {
     int frames = kRestFrames;
-    while (!has_ended() && !(script && script->wants_to_end())) {
+    while (!is_terminated() && !has_ended() && !(script && script->wants_to_end())) {
         const bool is_busy = workbench_.is_moving() || (script && !script->is_done());
         window_.wait_events(frames > 0 ? 0 : is_busy ? kMovingWait : kIdleWait);
         place_picture();

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -10,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/command_line.h"
+#include "common/exit_codes.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "viewer/interface.h"
@@ -22,6 +24,10 @@ namespace {
 
 /// Of a window whose picture has no size of its own.
 constexpr int kWindowWidth = 1240, kWindowHeight = 720;
+
+volatile std::sig_atomic_t received_signal = 0;
+
+bool is_terminated() { return received_signal != 0; }
 
 /// A window that never showed anything says why on the terminal too. Throws Error{bad_input}.
 void refuse_nothing_shown(const Workbench& workbench) {
@@ -45,18 +51,23 @@ int run_viewer(const ViewerOptions& options, double start) {
     Window window(size ? size->first + Interface::kPanelWidth : kWindowWidth,
                   size ? size->second + Interface::kLineHeight : kWindowHeight, "Relief");
     Interface interface(window, workbench, size);
-    if (options.script.empty()) {
-        interface.run(nullptr, start);
+    // What was painted is kept then, too.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        std::signal(signal, [](int received) { received_signal = received; });
+    const auto end = [&] {
         refuse_nothing_shown(workbench);
-        return 0;
+        return received_signal != 0 ? cli::kExitSignalBase + received_signal : cli::kExitDone;
+    };
+    if (options.script.empty()) {
+        interface.run(nullptr, start, is_terminated);
+        return end();
     }
     ScriptRunner script(std::move(lines), options.script.string(), workbench, interface.view(),
                         {[&](const InputEvent& event) { window.inject(event); },
                          [&](const std::filesystem::path& file) { window.take_screenshot(file); },
                          [](const std::string& line) { std::cout << line << std::endl; }});
-    interface.run(&script, start);
-    refuse_nothing_shown(workbench);
-    return 0;
+    interface.run(&script, start, is_terminated);
+    return end();
 }
 
 } // namespace

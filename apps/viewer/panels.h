@@ -48,6 +48,9 @@ void draw_timeline(Workbench& workbench);
 /// `indent`: where it begins.
 void draw_state(Workbench& workbench, float indent);
 
+/// In the middle of `area`, while nothing is open: what to do, or why a file could not be read.
+void draw_empty_view(const Workbench& workbench, const ViewArea& area);
+
 enum class EndAnswer { none, save, leave, stay };
 /// Asks what becomes of changes when the viewer ends or opens another file. `file`: what they would be saved
 /// as; `leave`: what is done without that.

@@ -27,6 +27,7 @@ constexpr const char* kKeys[][2] = {
     {"S", "saves the scene, and painted maps beside it"},
     {"F12", "writes the picture once all its samples are there"},
     {"control + Q", "ends"},
+    {"Escape", "closes what explains a pixel, and this help"},
     {"drop files", "a scene or mesh opens, with its map; a map goes onto the mesh, an .hdr is the light"},
 };
 
@@ -76,10 +77,7 @@ void draw_wrapped(const std::string& text, float width) {
 void draw_state(Workbench& workbench, float indent) {
     draw_samples(workbench);
     ImGui::SameLine(indent);
-    if (workbench.message().empty()) {
-        if (!workbench.document()) ImGui::TextUnformatted("Drop a scene or a mesh here. F1 lists keys.");
-        return;
-    }
+    if (workbench.message().empty()) return;
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::TextUnformatted(workbench.message().c_str());
     if (ImGui::IsItemHovered() && ImGui::CalcTextSize(workbench.message().c_str()).x > width) {
@@ -93,6 +91,23 @@ void draw_state(Workbench& workbench, float indent) {
     ImGui::EndPopup();
 }
 
+void draw_empty_view(const Workbench& workbench, const ViewArea& area) {
+    if (workbench.document() || workbench.is_loading()) return;
+    const float width = area.width * 0.7f;
+    ImGui::SetNextWindowPos({area.x + area.width / 2, area.y + area.height / 2}, ImGuiCond_Always,
+                            {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({width, 0});
+    constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
+                                        ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings;
+    if (ImGui::Begin("Empty", nullptr, kFlags)) {
+        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.75f, 0.3f, 1.0f));
+        draw_wrapped(workbench.load_error(), width);
+        ImGui::PopStyleColor();
+        draw_wrapped("Drop a scene or a mesh here, with its map. F1 lists keys.", width);
+    }
+    ImGui::End();
+}
+
 EndAnswer draw_end_question(const std::string& file, const char* leave) {
     EndAnswer answer = EndAnswer::none;
     constexpr const char* kTitle = "Not everything is saved";
@@ -101,11 +116,11 @@ EndAnswer draw_end_question(const std::string& file, const char* leave) {
     ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return answer;
     ImGui::Text("Save what was changed as %s?", file.c_str());
-    if (ImGui::Button("save")) answer = EndAnswer::save;
+    if (ImGui::Button("save") || ImGui::IsKeyPressed(ImGuiKey_Enter, false)) answer = EndAnswer::save;
     ImGui::SameLine();
     if (ImGui::Button(leave)) answer = EndAnswer::leave;
     ImGui::SameLine();
-    if (ImGui::Button("go on") || ImGui::IsKeyPressed(ImGuiKey_Escape)) answer = EndAnswer::stay;
+    if (ImGui::Button("cancel") || ImGui::IsKeyPressed(ImGuiKey_Escape)) answer = EndAnswer::stay;
     if (answer != EndAnswer::none) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
     return answer;

@@ -113,6 +113,8 @@ void draw_view_panel(PanelState& state) {
     if (ImGui::Combo("shown", &view, kViewNames, int(std::size(kViewNames)))) state.view.view = View(view);
     if (state.view.view != View::colour) return;
     ImGui::SliderFloat("exposure", &state.view.exposure, -8, 8, "%.1f stops");
+    // No part of a scene.
+    if (state.view.exposure != 0) ImGui::TextDisabled("of a render: --exposure %g", state.view.exposure);
     if (!ImGui::BeginCombo("display", state.display.c_str())) return;
     for (const char* name : kDisplayNames)
         if (ImGui::Selectable(name, state.display == name))

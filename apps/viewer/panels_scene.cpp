@@ -87,7 +87,7 @@ void draw_doubts(const Workbench& workbench) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.75f, 0.3f, 1.0f));
     for (const std::string& doubt : workbench.document()->doubts()) ImGui::TextWrapped("%s", doubt.c_str());
     for (const std::string& warning : workbench.render_state().statistics->warnings)
-        ImGui::TextWrapped("%s", warning.c_str());
+        ImGui::TextWrapped("%s", name_panels(warning).c_str());
     ImGui::PopStyleColor();
 }
 
@@ -125,13 +125,14 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     }
     ImGui::TextUnformatted(document.input().file.filename().string().c_str());
     ImGui::SameLine();
-    ImGui::TextDisabled("%s", document.has_changes() ? "changed"
-                              : document.is_saved()  ? "saved"
-                                                     : "as it was read");
+    ImGui::TextDisabled("%s", workbench.has_unsaved() ? "changed"
+                              : document.is_saved()   ? "saved"
+                                                      : "as it was read");
     if (state.scene_file.empty()) state.scene_file = workbench.suggest_file(".json").string();
-    ImGui::InputText("##scene", &state.scene_file);
+    const bool is_entered =
+        ImGui::InputText("##scene", &state.scene_file, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
-    if (ImGui::Button("save (S)")) workbench.save(state.scene_file);
+    if (ImGui::Button("save (S)") || is_entered) workbench.save(state.scene_file);
     if (ImGui::Button("write picture (F12)")) workbench.write_picture(workbench.suggest_file(".exr"));
 }
 
@@ -217,8 +218,9 @@ void draw_light_panel(Workbench& workbench, PanelState& state) {
     const Scene& scene = workbench.document()->scene();
     if (scene.environment) {
         Environment changed = *scene.environment;
-        bool is_changed = ImGui::DragFloat("rotation", &changed.rotate_degrees, 1, -360, 360, "%.0f degrees");
-        is_changed |= ImGui::DragFloat("strength", &changed.strength, 0.01f, 0, 1e6f, "%.3g");
+        bool is_changed =
+            ImGui::DragFloat("sky rotation", &changed.rotate_degrees, 1, -360, 360, "%.0f degrees");
+        is_changed |= ImGui::DragFloat("sky strength", &changed.strength, 0.01f, 0, 1e6f, "%.3g");
         changed.strength = std::max(changed.strength, 0.0f);
         if (is_changed)
             workbench.change_document(

@@ -18,6 +18,7 @@
 #include <stb_image_write.h>
 
 #include "common/exit_codes.h"
+#include "relief/error.h"
 #include "viewer/browser_server.h"
 #include "viewer/workbench.h"
 
@@ -109,6 +110,8 @@ int serve(const ViewerOptions& options) {
     while (received_signal == 0) {
         for (const InputEvent& event : server.take_events()) workbench.handle(place_event(event, image));
         workbench.update(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        if (!workbench.document() && !workbench.load_error().empty())
+            throw Error(ErrorKind::bad_input, {workbench.load_error(), "", ""});
         if (const std::shared_ptr<const ShownPicture> picture = workbench.picture()) {
             const std::string state = describe_state(workbench, *picture);
             if (picture != shown || state != text)

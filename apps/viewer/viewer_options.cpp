@@ -56,18 +56,22 @@ void complete_viewer_options(ViewerOptions& o) {
     cli::complete_engine_options(o.engine, o.settings);
     if (o.input.file.empty() || !is_mesh_file(o.input.file)) {
         if (!o.mesh_only.empty())
-            throw Error(ErrorKind::usage, {fmt::format("{} goes with a mesh", o.mesh_only.front()),
-                                           o.input.file.string(), "a scene file says it itself"});
+            throw Error(
+                ErrorKind::usage,
+                {fmt::format("{} goes with a mesh", o.mesh_only.front()), o.input.file.string(),
+                 o.input.file.empty() ? "relief view MESH --vdm MAP" : "a scene file says it itself"});
     }
     cli::check_mesh_options(o.input.mesh);
     cli::check_map_options(o.input.mesh);
     cli::check_map_words(o.input.mesh.map);
-    for (const std::filesystem::path& file : {o.input.file, o.script})
-        if (!file.empty() && !std::filesystem::exists(file))
+    const std::filesystem::path& map = o.input.mesh.displacement_map;
+    const bool has_tiles = map.string().find("<UDIM>") != std::string::npos;
+    for (const std::filesystem::path& file : {o.input.file, o.script, o.input.mesh.environment, map})
+        if (!file.empty() && !(has_tiles && file == map) && !std::filesystem::exists(file))
             throw Error(ErrorKind::bad_input, {"there is no such file", file.string(), ""});
     if (o.port && (o.input.file.empty() || !o.script.empty()))
         throw Error(ErrorKind::usage,
-                    {o.script.empty() ? "--serve needs a scene or a mesh" : "--script goes with a window",
+                    {o.script.empty() ? "a scene or a mesh is needed" : "--script goes with a window",
                      "--serve", "relief view SCENE --serve 0"});
     ImageSettings& image = o.settings.image;
     image.width = o.given.width.value_or(image.width), image.height = o.given.height.value_or(image.height);

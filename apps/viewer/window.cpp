@@ -199,7 +199,8 @@ bool Window::is_for_panels(const InputEvent& event) const {
     case Kind::key_down: {
         const bool is_of_panels = event.key == kLeft || event.key == kRight || event.key == kUp ||
                                   event.key == kDown || event.key == kEnter || event.key == ' ';
-        return io.WantTextInput || (is_of_panels && io.NavVisible);
+        const bool ends = event.modifiers.control && event.key == 'Q';
+        return !ends && (io.WantTextInput || (is_of_panels && io.NavVisible));
     }
     case Kind::move:
     case Kind::release:

@@ -40,7 +40,7 @@ Workbench::Workbench(const RenderSettings& settings, const PictureDefaults& give
 }
 
 Workbench::~Workbench() {
-    if (document_) attempt([&] { state_.keep_now(*document_); });
+    if (document_ && !is_discarded_) attempt([&] { state_.keep_now(*document_); });
 }
 
 bool Workbench::attempt(const std::function<void()>& body) {
@@ -124,9 +124,11 @@ void Workbench::note_message() {
     if (messages_.size() > kMostMessages) messages_.pop_back();
 }
 
-bool Workbench::has_unsaved() const {
+bool Workbench::has_edits() const {
     return document_ && (document_->has_changes() || document_->has_strokes_aside());
 }
+
+bool Workbench::has_unsaved() const { return has_edits() || (document_ && has_dropped_map_); }
 
 void Workbench::set_tool(Tool tool) {
     tool_ = tool;

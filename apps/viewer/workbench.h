@@ -60,6 +60,8 @@ class Workbench {
     void open_asked() { drop(std::exchange(asked_files_, {})); }
     void forget_asked() { asked_files_.clear(); }
     bool save(const std::filesystem::path& file);
+    /// What is not saved is not wanted: it is not kept when the document goes.
+    void discard();
     /// In the convention of a preset (conventions.h); empty: in that which the map has.
     bool save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset = {});
     std::vector<std::filesystem::path> list_recent() const { return state_.read_recent(); }
@@ -79,6 +81,8 @@ class Workbench {
     void set_wants_to_end(bool wants_to_end) { wants_to_end_ = wants_to_end; }
     /// Something was changed or painted, at any frame, since the scene was saved.
     bool has_unsaved() const;
+    /// The map of the mesh was dropped onto it: so far in no file.
+    bool has_dropped_map() const { return has_dropped_map_; }
     bool is_help_shown() const { return is_help_shown_; }
     void show_help(bool is_shown) { is_help_shown_ = is_shown; }
     /// Something moves by itself: update() is to be called soon again.
@@ -154,12 +158,12 @@ class Workbench {
   private:
     struct Load {
         SceneInput input;
-        bool keeps_camera = false;
+        bool keeps_camera = false, has_dropped_map = false;
     };
     struct Loaded {
         SceneInput input;
         std::optional<LoadedInput> loaded;
-        bool keeps_camera = false;
+        bool keeps_camera = false, has_dropped_map = false;
         std::string error;
     };
     struct ReadFrame {
@@ -187,8 +191,11 @@ class Workbench {
 
     void frame(const std::optional<uint32_t>& object);
     void forget_explanation();
+    bool has_edits() const; ///< has_unsaved(), beside the map that was dropped
     void drop_alone(const std::filesystem::path& file);
-    void load(SceneInput input, bool keeps_camera);
+    void load(Load load);
+    /// The same file again, by the same camera.
+    void read_again() { load({document_->input(), true, has_dropped_map_}); }
     void start(Load load);
     void adopt(Loaded loaded);
     void adopt(Reread reread);
@@ -249,6 +256,7 @@ class Workbench {
     uint64_t frame_version_ = 0;      ///< of the first request of the frame that is shown
     Camera scene_camera_;
     bool has_own_camera_ = false; ///< somebody moved it
+    bool has_dropped_map_ = false, is_discarded_ = false;
 
     std::shared_ptr<const SharedScene> snapshot_;
     uint64_t snapshot_version_ = 0;

@@ -44,13 +44,14 @@ bool is_file_of(const Scene& scene, size_t displacement, int udim, const std::st
 
 bool is_environment(const std::filesystem::path& file) { return cli::get_lower_extension(file) == ".hdr"; }
 
+bool is_map(const std::filesystem::path& file) { return cli::get_kind(file) == cli::FileKind::map; }
+
 } // namespace
 
-void Workbench::open(const SceneInput& input) { load(input, false); }
+void Workbench::open(const SceneInput& input) { load({input}); }
 
-void Workbench::load(SceneInput input, bool keeps_camera) {
-    if (input.mesh.reader.program.empty()) input.mesh.reader = cli::make_mesh_reader();
-    Load load{std::move(input), keeps_camera};
+void Workbench::load(Load load) {
+    if (load.input.mesh.reader.program.empty()) load.input.mesh.reader = cli::make_mesh_reader();
     if (loading_.valid()) // to assign to it would wait
         next_load_ = std::move(load);
     else
@@ -58,12 +59,10 @@ void Workbench::load(SceneInput input, bool keeps_camera) {
 }
 
 void Workbench::start(Load load) {
-    auto& [input, keeps_camera] = load;
-    message_ = fmt::format("loading {}", input.file.filename().string());
+    message_ = fmt::format("loading {}", load.input.file.filename().string());
     has_news_ = true;
-    loading_ = std::async(std::launch::async, [input = std::move(input), keeps_camera = keeps_camera,
-                                               on_news = on_news_]() mutable {
-        Loaded loaded{std::move(input), std::nullopt, keeps_camera, {}};
+    loading_ = std::async(std::launch::async, [load = std::move(load), on_news = on_news_]() mutable {
+        Loaded loaded{std::move(load.input), std::nullopt, load.keeps_camera, load.has_dropped_map, {}};
         try {
             loaded.loaded = load_input(loaded.input);
         } catch (const std::exception& error) {
@@ -78,6 +77,7 @@ void Workbench::adopt(Loaded loaded) {
     has_news_ = true;
     message_ = loaded.error;
     load_error_ = loaded.error;
+    const bool is_discarded = std::exchange(is_discarded_, false);
     if (!loaded.loaded) {
         watch_files();
         return;
@@ -85,12 +85,13 @@ void Workbench::adopt(Loaded loaded) {
     const bool is_first = !document_;
     if (!loaded.keeps_camera) drop_output("another file is open");
     painter_.reset();
-    if (document_) state_.keep_now(*document_);
+    if (document_ && !is_discarded) state_.keep_now(*document_);
     shot_ = loaded.loaded->shot;
     wanted_frame_.reset();
     timeline_ = {};
     if (shot_) timeline_ = Timeline(loaded.loaded->frames, loaded.loaded->scene.picture.fps.value_or(0));
     document_ = std::make_unique<Document>(loaded.input, std::move(*loaded.loaded));
+    has_dropped_map_ = loaded.has_dropped_map;
     painter_ = std::make_unique<Painter>(*document_);
     ++scene_count_;
     has_new_frame_ = true;
@@ -106,7 +107,7 @@ void Workbench::adopt(Loaded loaded) {
     if (!given_.spp) image.spp = picture.spp.value_or(ImageSettings().spp);
     if (!given_.bounces) image.bounces = picture.bounces.value_or(ImageSettings().bounces);
     if (!given_.seed) image.seed = picture.seed.value_or(0);
-    if (!scene.warnings.empty()) message_ = scene.warnings.front();
+    if (!scene.warnings.empty()) message_ = name_panels(scene.warnings.front());
     if (!document_->doubts().empty()) message_ = document_->doubts().front();
     if (const auto painted = state_.claim_painted(loaded.input.file); !painted.empty())
         message_ = fmt::format("painted before and not saved: {}", painted.front().string());
@@ -128,7 +129,9 @@ void Workbench::watch_files() {
 
 void Workbench::ask_to_open(const std::vector<std::filesystem::path>& files) {
     const bool is_change = std::ranges::all_of(files, is_environment); // of the scene that is open
-    if (is_change || !has_unsaved()) return drop(files);
+    // Nothing is lost with a map that only takes the place of another one.
+    const bool is_other_map = has_dropped_map_ && !has_edits() && std::ranges::all_of(files, is_map);
+    if (is_change || is_other_map || !has_unsaved()) return drop(files);
     asked_files_ = files;
     has_news_ = true;
 }
@@ -141,7 +144,7 @@ void Workbench::drop(const std::vector<std::filesystem::path>& files) {
     }
     SceneInput input{*mesh, {}, {}};
     for (const std::filesystem::path& file : files) {
-        if (cli::get_kind(file) != cli::FileKind::map) continue;
+        if (!is_map(file)) continue;
         if (is_environment(file))
             input.mesh.environment = file;
         else
@@ -170,7 +173,7 @@ void Workbench::drop_alone(const std::filesystem::path& file) {
         return;
     }
     input.mesh.displacement_map = name_pattern(file);
-    load(input, true);
+    load({input, true, true});
 }
 
 /// Maps come as edits; of anything else the whole scene is read again.
@@ -183,7 +186,7 @@ void Workbench::reload(const std::vector<std::filesystem::path>& files) {
         if (is_map) maps.push_back(file);
     }
     if (maps.size() == files.size()) return reread(maps);
-    if (!document_->has_changes() && !document_->has_strokes_aside()) return load(document_->input(), true);
+    if (!has_edits()) return read_again();
     message_ = fmt::format("{} changed on the disk: save what was changed here, or open it again",
                            files.front().filename().string());
     has_news_ = true;
@@ -230,8 +233,7 @@ void Workbench::adopt(Reread reread) {
             continue;
         }
         edits.push_back(make_whole_edit(displacement, map.udim, map.texels));
-        if (!document_->replace_tile(map.displacement, map.udim, std::move(map.texels)))
-            return load(document_->input(), true);
+        if (!document_->replace_tile(map.displacement, map.udim, std::move(map.texels))) return read_again();
     }
     if (edits.empty()) return;
     painter_->end();
@@ -261,6 +263,7 @@ bool Workbench::save(const std::filesystem::path& file) {
         document_->set_camera(camera_.get());
         const std::vector<std::filesystem::path> written = document_->save(file, settings_.image);
         for (const std::filesystem::path& path : written) watch_.accept(path);
+        has_dropped_map_ = false;
         state_.forget_painted();
         message_ = fmt::format("wrote {}", file.string());
         if (const std::vector<int> frames = document_->list_frames_aside(); !frames.empty())
@@ -268,6 +271,11 @@ bool Workbench::save(const std::filesystem::path& file) {
                                     fmt::join(frames, ", "));
         has_news_ = true;
     });
+}
+
+void Workbench::discard() {
+    state_.forget_painted();
+    is_discarded_ = true;
 }
 
 bool Workbench::save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset) {

@@ -188,6 +188,17 @@ TEST_F(PaintedWorkbench, what_was_painted_is_kept_at_the_end) {
     EXPECT_EQ(UserState(folder_ / "state").claim_painted(file).size(), 1u);
 }
 
+TEST_F(PaintedWorkbench, what_was_discarded_is_not_kept) {
+    const std::filesystem::path file = bench_->document()->input().file;
+    bench_->discard();
+    bench_->open({file, {}, {}});
+    ASSERT_TRUE(reach([&] { return !bench_->is_loading(); }));
+    EXPECT_EQ(bench_->message().find("painted before"), std::string::npos) << bench_->message();
+    write_texel(bench_->document()->paint_tile(0, 1001), 12, 20, {0, 0, 0.5f});
+    bench_.reset(); // that was not meant
+    EXPECT_EQ(UserState(folder_ / "state").claim_painted(file).size(), 1u);
+}
+
 TEST_F(PaintedWorkbench, another_scene_does_not_take_it_away) {
     const std::filesystem::path file = bench_->document()->input().file;
     bench_->open({file, {}, {}});

@@ -161,6 +161,10 @@ def main():
             taken = subprocess.run([relief, "view", "scene.json", "--serve", str(port)], cwd=folder, text=True,
                                    capture_output=True, timeout=PATIENCE)
             assert taken.returncode == 1 and str(port) in taken.stderr, taken.stderr
+            pathlib.Path(folder, "bad.obj").write_text("root:x:0:0:root:/root:/bin/bash\n")
+            bad = subprocess.run([relief, "view", "bad.obj", "--serve", "0"], cwd=folder, text=True, capture_output=True,
+                                 timeout=PATIENCE)
+            assert bad.returncode == 3 and "bad.obj" in bad.stderr, bad.stderr
             viewer.send_signal(signal.SIGTERM)
             assert viewer.wait(PATIENCE) == 128 + signal.SIGTERM
             assert not pathlib.Path(folder, "scene-view.json").exists()  # pages change no files

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -182,6 +183,20 @@ def check_mistakes(viewer):
     assert result.returncode == 2 and "--spp" in result.stderr, (result.returncode, result.stderr)
 
 
+def check_signal(viewer):
+    """What ends the viewer from outside ends it as a user does: painted maps are kept then."""
+    (viewer.folder / "waits.jsonl").write_text('{"wait": "picture"}\n{"screenshot": "waits.png"}\n{"wait": 60}\n')
+    process = subprocess.Popen([viewer.relief, "view", "pumpkin/scene.json", "--size", "64x36", "--script", "waits.jsonl"],
+                               cwd=viewer.folder, env=viewer.environment)
+    until = time.monotonic() + 60
+    while not (viewer.folder / "waits.png").exists() and time.monotonic() < until:
+        time.sleep(0.1)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(30) == 128 + signal.SIGTERM
+    result = viewer.run("view", "pumpkin/meshes/pumpkin.obj", "--vdm", "nowhere.exr")
+    assert result.returncode == 3 and "nowhere.exr" in result.stderr, (result.returncode, result.stderr)
+
+
 def main():
     if not shutil.which("Xvfb"):
         print("no Xvfb: not run")
@@ -196,6 +211,7 @@ def main():
             check_session(viewer)
             check_frames(viewer)
             check_mistakes(viewer)
+            check_signal(viewer)
             print(f"{time.monotonic() - start:.1f} s")
     finally:
         server.terminate()
