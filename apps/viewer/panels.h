@@ -17,6 +17,7 @@ struct PanelState {
     std::string display = kDisplayNames[0];
     bool is_display_changed = false;  ///< read and reset by whoever makes the table
     std::string scene_file, map_file; ///< names to save as
+    std::string picture_file;         ///< empty: the suggested one
     std::filesystem::path input;      ///< what they belong to
     std::string map_preset;           ///< convention to save a map in; empty: its own
     size_t displacement = 0, material = 0, light = 0;

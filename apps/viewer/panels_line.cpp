@@ -25,7 +25,7 @@ constexpr const char* kKeys[][2] = {
     {"[ and ]", "smaller and larger brush"},
     {"control + Z, control + Y", "undo, redo: strokes, and how maps are meant"},
     {"S", "saves the scene, and painted maps beside it"},
-    {"F12", "writes the picture once all its samples are there"},
+    {"F12", "writes the picture once all its samples are there: .exr, or .png as it is seen"},
     {"control + Q", "ends"},
     {"Escape", "closes what explains a pixel, and this help"},
     {"drop files", "a scene or mesh opens, with its map; a map goes onto the mesh, an .hdr is the light"},

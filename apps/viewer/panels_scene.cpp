@@ -121,7 +121,7 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     const Document& document = *workbench.document();
     if (state.input != document.input().file) {
         state.input = document.input().file;
-        state.scene_file.clear(), state.map_file.clear();
+        state.scene_file.clear(), state.map_file.clear(), state.picture_file.clear();
     }
     ImGui::TextUnformatted(document.input().file.filename().string().c_str());
     ImGui::SameLine();
@@ -133,7 +133,12 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
         ImGui::InputText("##scene", &state.scene_file, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
     if (ImGui::Button("save (S)") || is_entered) workbench.save(state.scene_file);
-    if (ImGui::Button("write picture (F12)")) workbench.write_picture(workbench.suggest_file(".exr"));
+    ImGui::InputTextWithHint("##picture", workbench.suggest_file(".exr").filename().string().c_str(),
+                             &state.picture_file);
+    ImGui::SameLine();
+    workbench.set_output(state.picture_file, {{"relief:display", state.display},
+                                              {"relief:exposure", fmt::format("{:g}", state.view.exposure)}});
+    if (ImGui::Button("write (F12)")) workbench.write_picture();
 }
 
 void draw_object_panel(Workbench& workbench) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -70,6 +71,15 @@ class Workbench {
     /// Writes the picture, with its layers where it is an .exr, once it has all samples; at another frame it
     /// is not written. Pauses.
     void write_picture(const std::filesystem::path& file);
+    /// What F12 writes: the name, empty for suggest_file(".exr"), and header entries of the picture, which
+    /// say how a .png of it looks.
+    void set_output(std::string name, std::map<std::string, std::string> metadata) {
+        output_name_ = std::move(name), output_metadata_ = std::move(metadata);
+    }
+    /// As F12.
+    void write_picture() {
+        write_picture(output_name_.empty() ? suggest_file(".exr") : std::filesystem::path(output_name_));
+    }
 
     // Input and time.
     void set_area(const ViewArea& area) { area_ = area; }
@@ -270,6 +280,8 @@ class Workbench {
     std::shared_ptr<const ShownPicture> denoised_; ///< of the same version; null: none
     bool is_denoised_ = false;
     std::vector<std::filesystem::path> asked_files_;
+    std::string output_name_;
+    std::map<std::string, std::string> output_metadata_;
     std::filesystem::path output_; ///< a picture to write when it is done; empty: none
     std::string message_, last_error_, load_error_;
     std::deque<std::string> messages_;

@@ -310,7 +310,9 @@ void Workbench::finish_output() {
     if (output_.empty() || !is_done()) return;
     const std::filesystem::path file = std::exchange(output_, {});
     attempt([&] {
-        write_image(shown_picture()->image, file);
+        Image image = shown_picture()->image;
+        for (const auto& [name, value] : output_metadata_) image.metadata[name] = value;
+        write_image(image, file);
         message_ = fmt::format("wrote {}", file.string());
     });
 }

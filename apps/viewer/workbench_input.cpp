@@ -204,7 +204,7 @@ bool Workbench::press_command(int key) {
         is_help_shown_ = !is_help_shown_;
         return true;
     case kF12:
-        write_picture(suggest_file(".exr"));
+        write_picture();
         return true;
     case kEscape:
         is_help_shown_ = false;

@@ -75,6 +75,19 @@ TEST_F(DroppedTest, a_scene_takes_the_place_of_no_file_of_another_kind) {
     EXPECT_TRUE(bench_->has_unsaved());
 }
 
+TEST_F(DroppedTest, a_picture_has_the_name_and_the_look_that_were_chosen) {
+    const auto write = [&](const char* name, const char* exposure) {
+        bench_->set_output((folder_ / name).string(),
+                           {{"relief:display", "standard"}, {"relief:exposure", exposure}});
+        press_key(kF12);
+        return reach([&] { return std::filesystem::exists(folder_ / name); });
+    };
+    ASSERT_TRUE(write("dark.png", "-4") && write("bright.png", "2")) << bench_->message();
+    const Texture dark = read_texture(folder_ / "dark.png"), bright = read_texture(folder_ / "bright.png");
+    const size_t middle = 4 * (size_t(dark.height / 2) * dark.width + dark.width / 2);
+    EXPECT_GT(bright.floats.at(middle), 2 * dark.floats.at(middle));
+}
+
 TEST(Panels, say_warnings_in_their_own_words) {
     EXPECT_EQ(name_panels("write displacement.axes = t,n,b or displacement.scale"),
               "write axes = t,n,b or scale");
