@@ -14,8 +14,8 @@ constexpr auto kDisplacementFields =
                &Displacement::has_midlevel, &Displacement::scale, &Displacement::flip_v, &Displacement::wrap,
                &Displacement::filter, &Displacement::assumed);
 constexpr auto kMaterialFields = std::tuple(&Material::base_color, &Material::roughness, &Material::metallic);
-constexpr auto kEnvironmentFields = std::tuple(&Environment::texture, &Environment::color,
-                                               &Environment::strength, &Environment::rotate_degrees);
+constexpr auto kEnvironmentFields =
+    std::tuple(&Environment::color, &Environment::strength, &Environment::rotate_degrees);
 constexpr auto kLightFields =
     std::tuple(&Light::direction, &Light::position, &Light::color, &Light::strength);
 
@@ -59,13 +59,20 @@ void ChangedFields::note(const Displacement& before, const Displacement& after, 
     fields = (fields & ~touched) | (touched & changed);
 }
 
-ChangedFields::Fields ChangedFields::find(const std::string& displacement) const {
-    const auto changed = displacements_.find(displacement);
-    return changed == displacements_.end() ? 0 : changed->second;
-}
-
 void ChangedFields::copy(const Displacement& from, Displacement& to, Fields fields) {
     copy_fields(from, to, fields, kDisplacementFields);
+}
+
+void ChangedFields::copy(const Material& from, Material& to, Fields fields) {
+    copy_fields(from, to, fields, kMaterialFields);
+}
+
+void ChangedFields::copy(const Environment& from, Environment& to, Fields fields) {
+    copy_fields(from, to, fields, kEnvironmentFields);
+}
+
+void ChangedFields::copy(const Light& from, Light& to, Fields fields) {
+    copy_fields(from, to, fields, kLightFields);
 }
 
 void ChangedFields::note(const Material& before, const Material& after) {
@@ -74,6 +81,7 @@ void ChangedFields::note(const Material& before, const Material& after) {
 
 void ChangedFields::note(const Environment& before, const Environment& after) {
     environment_ |= find_changes(before, after, kEnvironmentFields);
+    has_own_texture_ |= before.texture != after.texture;
 }
 
 void ChangedFields::note(size_t light, const Light& before, const Light& after) {
@@ -85,11 +93,11 @@ void ChangedFields::carry(const Scene& from, Scene& to) const {
     copy_named(from.materials, to.materials, materials_, kMaterialFields);
     if (from.lights.size() == to.lights.size())
         for (const auto& [light, fields] : lights_)
-            if (light < to.lights.size())
-                copy_fields(from.lights[light], to.lights[light], fields, kLightFields);
-    if (!environment_ || !from.environment) return;
+            if (light < to.lights.size()) copy(from.lights[light], to.lights[light], fields);
+    if ((!environment_ && !has_own_texture_) || !from.environment) return;
     if (!to.environment) to.environment.emplace();
-    copy_fields(*from.environment, *to.environment, environment_, kEnvironmentFields);
+    copy(*from.environment, *to.environment, environment_);
+    if (has_own_texture_) to.environment->texture = from.environment->texture;
 }
 
 } // namespace relief::viewer

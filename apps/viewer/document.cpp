@@ -112,39 +112,47 @@ std::shared_ptr<const SharedScene> Document::snapshot() {
     return shared;
 }
 
-void Document::change_displacement(size_t index, const std::function<void(Displacement&)>& change) {
+SceneValue Document::change_displacement(size_t index, const std::function<void(Displacement&)>& change) {
     Displacement& map = scene_.displacements.at(index);
     const Displacement before = map;
+    const SceneValue value{index, get_meaning(before), changed_.of(before, index)};
     change(map);
     map.assumed = {};
     changed_.note(before, map, read_maps_.at(index));
     doubts_.clear();
     changes_.displacements.insert(map.name);
     touch();
+    return value;
 }
 
-void Document::change_material(size_t index, const std::function<void(Material&)>& change) {
+SceneValue Document::change_material(size_t index, const std::function<void(Material&)>& change) {
     Material& material = scene_.materials.at(index);
     const Material before = material;
+    const SceneValue value{index, before, changed_.of(before, index)};
     change(material);
     changed_.note(before, material);
     changes_.materials.insert(material.name);
     touch();
+    return value;
 }
 
-void Document::change_environment(const std::function<void(Environment&)>& change) {
-    if (!scene_.environment) return;
+std::optional<SceneValue> Document::change_environment(const std::function<void(Environment&)>& change) {
+    if (!scene_.environment) return std::nullopt;
     const Environment before = *scene_.environment;
+    const SceneValue value{0, before, changed_.of(before, 0)};
     change(*scene_.environment);
     changed_.note(before, *scene_.environment);
     touch();
+    return value;
 }
 
-void Document::change_light(size_t index, const std::function<void(Light&)>& change) {
+SceneValue Document::change_light(size_t index, const std::function<void(Light&)>& change) {
     const Light before = scene_.lights.at(index);
+    const SceneValue value{index, before, changed_.of(before, index)};
     change(scene_.lights[index]);
     changed_.note(index, before, scene_.lights[index]);
     touch();
+    return value;
 }
 
 void Document::load_environment(const std::filesystem::path& file) {

@@ -64,11 +64,10 @@ class Document {
     /// Another frame of the same file. What was changed stays changed; strokes stay where the frame has the
     /// map that they are on, others come back with it.
     FrameStrokes show_frame(ShotFrame next);
-    MapMeaning find_meaning(size_t displacement) const;
-    /// Gives how a map was meant at another frame what it has at this one, but for what was changed then.
-    void follow_frame(MapMeaning& meaning) const;
-    /// Makes a map mean that; returns what it meant before.
-    MapMeaning exchange_meaning(const MapMeaning& meaning);
+    /// Gives what something was at another frame what it has at this one, but for what was changed then.
+    void follow_frame(SceneValue& value) const;
+    /// Makes something that again; returns what it was before.
+    SceneValue exchange(const SceneValue& value);
     /// Frames whose maps have strokes that are not saved, without the one that is shown; rising.
     std::vector<int> list_frames_aside() const;
     bool has_strokes_aside() const { return !list_frames_aside().empty(); }
@@ -85,10 +84,12 @@ class Document {
     /// Grows with each change of texels to paint on.
     uint64_t paint_count() const { return paint_count_; }
 
-    void change_displacement(size_t index, const std::function<void(Displacement&)>& change);
-    void change_material(size_t index, const std::function<void(Material&)>& change);
-    void change_environment(const std::function<void(Environment&)>& change);
-    void change_light(size_t index, const std::function<void(Light&)>& change);
+    /// These return what it was before.
+    SceneValue change_displacement(size_t index, const std::function<void(Displacement&)>& change);
+    SceneValue change_material(size_t index, const std::function<void(Material&)>& change);
+    SceneValue change_light(size_t index, const std::function<void(Light&)>& change);
+    /// Nothing where there is none.
+    std::optional<SceneValue> change_environment(const std::function<void(Environment&)>& change);
     /// With a mesh alone it is the light, placed as load_mesh_scene() does it; the environment of a scene
     /// keeps its strength and rotation. Throws as read_texture.
     void load_environment(const std::filesystem::path& file);
@@ -124,6 +125,11 @@ class Document {
     };
 
     void note_read_maps();
+    void note_read_values(const Scene& scene);
+    SceneValue put_back(const Displacement& was, size_t index);
+    SceneValue put_back(const Material& was, size_t index);
+    SceneValue put_back(const Environment& was, size_t index);
+    SceneValue put_back(const Light& was, size_t index);
     std::string name_source(const Texture& texture) const;
     void put_aside(const Scene& next, FrameStrokes& strokes);
     void take_back(Scene& next, FrameStrokes& strokes);
@@ -145,7 +151,10 @@ class Document {
     SharedMeshes meshes_; ///< of the scene
     uint64_t content_ = 0;
     ChangedFields changed_;
-    std::vector<Displacement> read_maps_;                      ///< as the file has them at this frame
+    std::vector<Displacement> read_maps_; ///< as the file has them at this frame, as the next three
+    std::vector<Material> read_materials_;
+    std::vector<Light> read_lights_;
+    std::optional<Environment> read_environment_;
     std::map<TilePlace, std::shared_ptr<const Texture>> read_; ///< as the reader gave them
     std::map<TileSource, AsideTile> aside_;                    ///< painted maps of other frames
     std::vector<std::string> doubts_;

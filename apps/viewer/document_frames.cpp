@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,9 +16,16 @@ namespace relief::viewer {
 
 void Document::note_read_maps() {
     read_.clear();
-    read_maps_ = scene_.displacements;
+    note_read_values(scene_);
     for (const Displacement& map : scene_.displacements)
         for (const MapTile& tile : map.tiles) read_[{map.name, tile.udim}] = tile.texture;
+}
+
+void Document::note_read_values(const Scene& scene) {
+    read_maps_ = scene.displacements;
+    read_materials_ = scene.materials;
+    read_lights_ = scene.lights;
+    read_environment_ = scene.environment;
 }
 
 std::string Document::name_source(const Texture& texture) const {
@@ -81,7 +90,7 @@ FrameStrokes Document::show_frame(ShotFrame next) {
     }
     commit();
     make_names_distinct(next.scene->displacements);
-    read_maps_ = next.scene->displacements;
+    note_read_values(*next.scene);
     changed_.carry(scene_, *next.scene);
     put_aside(*next.scene, strokes);
     input_.frame = next.frame; // of the files that are named by it
@@ -93,26 +102,57 @@ FrameStrokes Document::show_frame(ShotFrame next) {
     return strokes;
 }
 
-MapMeaning Document::find_meaning(size_t displacement) const {
-    const Displacement& map = scene_.displacements.at(displacement);
-    return {displacement, get_meaning(map), changed_.find(map.name)};
+void Document::follow_frame(SceneValue& value) const {
+    const auto follow = [&](auto& was, const auto& read) {
+        if (value.index >= read.size()) return;
+        const auto before = std::exchange(was, read[value.index]);
+        ChangedFields::copy(before, was, value.changed);
+    };
+    if (auto* const map = std::get_if<Displacement>(&value.value)) {
+        follow(*map, read_maps_);
+        map->tiles.clear();
+    } else if (auto* const material = std::get_if<Material>(&value.value)) {
+        follow(*material, read_materials_);
+    } else if (auto* const light = std::get_if<Light>(&value.value)) {
+        follow(*light, read_lights_);
+    } else if (read_environment_) {
+        follow(std::get<Environment>(value.value), std::span(&*read_environment_, 1));
+    }
 }
 
-void Document::follow_frame(MapMeaning& meaning) const {
-    if (meaning.displacement >= scene_.displacements.size()) return;
-    const Displacement before = std::exchange(meaning.meaning, get_meaning(read_maps_[meaning.displacement]));
-    ChangedFields::copy(before, meaning.meaning, meaning.changed);
-}
-
-MapMeaning Document::exchange_meaning(const MapMeaning& meaning) {
-    MapMeaning before = find_meaning(meaning.displacement);
-    change_displacement(meaning.displacement, [&](Displacement& map) {
+SceneValue Document::put_back(const Displacement& was, size_t index) {
+    return change_displacement(index, [&](Displacement& map) {
         std::vector<MapTile> tiles = std::move(map.tiles);
-        map = meaning.meaning;
+        map = was;
         map.tiles = std::move(tiles);
     });
-    changed_.set(before.meaning.name, meaning.changed);
-    return before;
+}
+
+SceneValue Document::put_back(const Material& was, size_t index) {
+    return change_material(index, [&](Material& material) { material = was; });
+}
+
+SceneValue Document::put_back(const Environment& was, size_t) {
+    const auto before = change_environment([&](Environment& environment) {
+        auto texture = std::move(environment.texture);
+        environment = was;
+        environment.texture = std::move(texture);
+    });
+    return before.value_or(SceneValue{0, was, 0});
+}
+
+SceneValue Document::put_back(const Light& was, size_t index) {
+    return change_light(index, [&](Light& light) { light = was; });
+}
+
+SceneValue Document::exchange(const SceneValue& value) {
+    return std::visit(
+        [&](const auto& was) {
+            SceneValue before = put_back(was, value.index);
+            changed_.of(was, value.index) = value.changed;
+            return before;
+        },
+        value.value);
 }
 
 std::vector<int> Document::list_frames_aside() const {

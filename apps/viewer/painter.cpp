@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "common/texel_values.h"
 #include "common/vectors.h"
@@ -237,16 +238,16 @@ void Painter::end() {
     start_.reset();
 }
 
-MapMeaning Painter::exchange_meaning(const MapMeaning& meaning) {
-    frames_.clear(); // the space may be another
-    return document_.exchange_meaning(meaning);
+SceneValue Painter::exchange(const SceneValue& value) {
+    if (std::holds_alternative<Displacement>(value.value)) frames_.clear(); // the space may be another
+    return document_.exchange(value);
 }
 
 std::vector<MapEdit> Painter::undo() {
     history_.undo(
         [&](const TilePlace& p) -> Texture& { return document_.paint_tile(p.displacement, p.udim); },
         [&](const TilePlace& place, const TexelBox& box) { note_change(place, box); },
-        [&](const MapMeaning& meaning) { return exchange_meaning(meaning); });
+        [&](const SceneValue& value) { return exchange(value); });
     return take_edits();
 }
 
@@ -254,7 +255,7 @@ std::vector<MapEdit> Painter::redo() {
     history_.redo(
         [&](const TilePlace& p) -> Texture& { return document_.paint_tile(p.displacement, p.udim); },
         [&](const TilePlace& place, const TexelBox& box) { note_change(place, box); },
-        [&](const MapMeaning& meaning) { return exchange_meaning(meaning); });
+        [&](const SceneValue& value) { return exchange(value); });
     return take_edits();
 }
 

@@ -34,17 +34,17 @@ class Painter {
     bool can_undo() const { return history_.can_undo(); }
     bool can_redo() const { return history_.can_redo(); }
     bool has_strokes() const { return history_.has_strokes(); }
-    /// As StrokeHistory::note_meaning.
-    void note_meaning(const MapMeaning& before, bool is_new) { history_.note_meaning(before, is_new); }
-    /// Without edits where the step was how a map is meant, which the document has then.
+    /// As StrokeHistory::note_value.
+    void note_value(const SceneValue& before, bool is_new) { history_.note_value(before, is_new); }
+    /// Without edits where the step was no stroke: the document has it then.
     std::vector<MapEdit> undo();
     std::vector<MapEdit> redo();
     /// Of maps that were replaced nothing can be taken back.
     void forget() { history_.clear(), frames_.clear(); }
-    /// Meshes were replaced, and values of maps have followed their keys.
+    /// Meshes were replaced, and values have followed their keys.
     void follow_frame() {
         frames_.clear();
-        history_.change_meanings([&](MapMeaning& meaning) { document_.follow_frame(meaning); });
+        history_.change_values([&](SceneValue& value) { document_.follow_frame(value); });
     }
 
   private:
@@ -65,7 +65,7 @@ class Painter {
     void apply(const Piece& piece, const SurfacePoint& point, int udim, Texture& texture);
     void smooth(const Piece& piece, Texture& texture) const;
     std::vector<MapEdit> grab(const ShownPicture& picture, float x, float y);
-    MapMeaning exchange_meaning(const MapMeaning& meaning);
+    SceneValue exchange(const SceneValue& value);
     void note_change(const TilePlace& place, const TexelBox& box);
     std::vector<MapEdit> take_edits();
 

@@ -23,7 +23,7 @@ constexpr const char* kKeys[][2] = {
     {". and Home", "show the object that was clicked on; all objects"},
     {"B", "paint or look"},
     {"[ and ]", "smaller and larger brush"},
-    {"control + Z, control + Y", "undo, redo: strokes, and how maps are meant"},
+    {"control + Z, control + Y", "undo, redo: strokes, changes of maps, materials and lights"},
     {"S", "saves the scene, and painted maps beside it"},
     {"F12", "writes the picture once all its samples are there: .exr, or .png as it is seen"},
     {"control + Q", "ends"},

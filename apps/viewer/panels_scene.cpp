@@ -228,8 +228,7 @@ void draw_light_panel(Workbench& workbench, PanelState& state) {
         is_changed |= ImGui::DragFloat("sky strength", &changed.strength, 0.01f, 0, 1e6f, "%.3g");
         changed.strength = std::max(changed.strength, 0.0f);
         if (is_changed)
-            workbench.change_document(
-                [&](Document& d) { d.change_environment([&](Environment& e) { e = changed; }); });
+            workbench.change_environment([&](Environment& environment) { environment = changed; });
     }
     if (scene.lights.empty()) return;
     state.light = std::min(state.light, scene.lights.size() - 1);
@@ -244,9 +243,7 @@ void draw_light_panel(Workbench& workbench, PanelState& state) {
     if (light.type != LightType::sun)
         is_changed |= ImGui::DragFloat3("position", &light.position.x, 0.01f, 0, 0, "%.3g");
     light.strength = std::max(light.strength, 0.0f);
-    if (is_changed)
-        workbench.change_document(
-            [&](Document& d) { d.change_light(state.light, [&](Light& changed) { changed = light; }); });
+    if (is_changed) workbench.change_light(state.light, [&](Light& changed) { changed = light; });
 }
 
 void draw_material_panel(Workbench& workbench, PanelState& state) {
@@ -263,10 +260,7 @@ void draw_material_panel(Workbench& workbench, PanelState& state) {
     for (float* value : {&material.base_color.x, &material.base_color.y, &material.base_color.z,
                          &material.roughness, &material.metallic})
         limit(*value);
-    if (is_changed)
-        workbench.change_document([&](Document& d) {
-            d.change_material(state.material, [&](Material& changed) { changed = material; });
-        });
+    if (is_changed) workbench.change_material(state.material, [&](Material& changed) { changed = material; });
 }
 
 } // namespace relief::viewer

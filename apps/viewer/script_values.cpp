@@ -72,12 +72,10 @@ void set_displacement(const Value& values, Workbench& workbench) {
 }
 
 void set_environment(const Value& values, Workbench& workbench) {
-    workbench.change_document([&](Document& document) {
-        document.change_environment([&](Environment& environment) {
-            if (values.contains("rotate_degrees"))
-                environment.rotate_degrees = values["rotate_degrees"].get<float>();
-            if (values.contains("strength")) environment.strength = values["strength"].get<float>();
-        });
+    workbench.change_environment([&](Environment& environment) {
+        if (values.contains("rotate_degrees"))
+            environment.rotate_degrees = values["rotate_degrees"].get<float>();
+        if (values.contains("strength")) environment.strength = values["strength"].get<float>();
     });
 }
 

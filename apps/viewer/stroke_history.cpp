@@ -53,10 +53,11 @@ Displacement get_meaning(const Displacement& map) {
     return meaning;
 }
 
-void StrokeHistory::note_meaning(const MapMeaning& before, bool is_new) {
+void StrokeHistory::note_value(const SceneValue& before, bool is_new) {
     undone_.clear();
-    const auto* const last = done_.empty() ? nullptr : std::get_if<MapMeaning>(&done_.back());
-    if (is_new || !last || last->displacement != before.displacement) done_.emplace_back(before);
+    const auto* const last = done_.empty() ? nullptr : std::get_if<SceneValue>(&done_.back());
+    const bool is_same = last && last->index == before.index && last->value.index() == before.value.index();
+    if (is_new || !is_same) done_.emplace_back(before);
 }
 
 bool StrokeHistory::has_strokes() const {

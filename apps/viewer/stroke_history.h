@@ -1,5 +1,5 @@
-// What strokes changed, in blocks of texels, and how maps were meant before that was changed, so that both
-// can be taken back and made again.
+// What strokes changed, in blocks of texels, and how maps, materials, the environment and lights were before
+// they were changed, so that all of it can be taken back and made again.
 #pragma once
 
 #include <compare>
@@ -25,10 +25,11 @@ struct TilePlace {
     friend auto operator<=>(const TilePlace&, const TilePlace&) = default;
 };
 
-/// How a displacement was meant; its texels are left out.
-struct MapMeaning {
-    size_t displacement = 0;
-    Displacement meaning;
+/// What one of a scene was: how a displacement was meant, without its texels; the environment, whose texture
+/// does not count; a material or a light.
+struct SceneValue {
+    size_t index = 0; ///< of the displacement, material or light
+    std::variant<Displacement, Material, Environment, Light> value;
     ChangedFields::Fields changed = 0; ///< what of it differs from the file, and stays at other frames
 };
 Displacement get_meaning(const Displacement& map);
@@ -50,15 +51,15 @@ class StrokeHistory {
     /// A stroke that changed nothing is none.
     void end();
     bool is_open() const { return open_.has_value(); }
-    /// How a map was meant before a change, a step by itself. Without `is_new` it goes on with the step
-    /// before where that is one of the same map.
-    void note_meaning(const MapMeaning& before, bool is_new);
+    /// What something was before a change, a step by itself. Without `is_new` it goes on with the step before
+    /// where that is one of the same thing.
+    void note_value(const SceneValue& before, bool is_new);
     bool has_strokes() const;
-    /// Calls `change(meaning)` for each step that changed how a map is meant.
-    template <class Change> void change_meanings(const Change& change) {
+    /// Calls `change(value)` for each step that is no stroke.
+    template <class Change> void change_values(const Change& change) {
         for (std::deque<Step>* const steps : {&done_, &undone_})
             for (Step& step : *steps)
-                if (auto* const meaning = std::get_if<MapMeaning>(&step)) change(*meaning);
+                if (auto* const value = std::get_if<SceneValue>(&step)) change(*value);
     }
 
     bool can_undo() const { return !done_.empty() && !open_; }
@@ -66,15 +67,15 @@ class StrokeHistory {
     void clear();
 
     /// What the last stroke changed: calls `change(place, box)` for each block that was put back, and keeps
-    /// what `find(place)` holds there for redo. Of a step that changed how a map is meant,
-    /// `set_meaning(before)` puts that back and returns what it was.
-    template <class Find, class Change, class SetMeaning>
-    void undo(const Find& find, const Change& change, const SetMeaning& set_meaning) {
-        if (can_undo()) exchange(done_, undone_, find, change, set_meaning);
+    /// what `find(place)` holds there for redo. Of a step that is no stroke, `set_value(before)` puts
+    /// that back and returns what it was.
+    template <class Find, class Change, class SetValue>
+    void undo(const Find& find, const Change& change, const SetValue& set_value) {
+        if (can_undo()) exchange(done_, undone_, find, change, set_value);
     }
-    template <class Find, class Change, class SetMeaning>
-    void redo(const Find& find, const Change& change, const SetMeaning& set_meaning) {
-        if (can_redo()) exchange(undone_, done_, find, change, set_meaning);
+    template <class Find, class Change, class SetValue>
+    void redo(const Find& find, const Change& change, const SetValue& set_value) {
+        if (can_redo()) exchange(undone_, done_, find, change, set_value);
     }
 
   private:
@@ -84,7 +85,7 @@ class StrokeHistory {
         friend auto operator<=>(const BlockKey&, const BlockKey&) = default;
     };
     using Stroke = std::map<BlockKey, Texture>;
-    using Step = std::variant<Stroke, MapMeaning>;
+    using Step = std::variant<Stroke, SceneValue>;
 
     static TexelBox get_box(const BlockKey& key, const Texture& map);
     void forget_oldest();
@@ -102,15 +103,15 @@ class StrokeHistory {
         return other;
     }
 
-    template <class Find, class Change, class SetMeaning>
+    template <class Find, class Change, class SetValue>
     static void exchange(std::deque<Step>& from, std::deque<Step>& to, const Find& find, const Change& change,
-                         const SetMeaning& set_meaning) {
+                         const SetValue& set_value) {
         Step step = std::move(from.back());
         from.pop_back();
         if (auto* const stroke = std::get_if<Stroke>(&step))
             to.push_back(put_back(*stroke, find, change));
         else
-            to.push_back(set_meaning(std::get<MapMeaning>(step)));
+            to.push_back(set_value(std::get<SceneValue>(step)));
     }
 
     std::deque<Step> done_, undone_;

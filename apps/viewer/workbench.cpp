@@ -19,7 +19,7 @@ namespace {
 constexpr double kRest = 0.12, kHeldRest = 0.3, kPaintRest = 0.5;
 /// Seconds between two looks at files.
 constexpr double kWatchInterval = 0.2;
-/// Seconds between two changes of a map that are taken back together.
+/// Seconds between two changes of the same thing that are taken back together.
 constexpr double kChangeInterval = 1;
 /// Messages that are kept.
 constexpr size_t kMostMessages = 20;
@@ -107,15 +107,29 @@ void Workbench::change_document(const std::function<void(Document&)>& change) {
     set_motion(Motion::moving);
 }
 
-void Workbench::change_displacement(size_t index, const std::function<void(Displacement&)>& change) {
+void Workbench::change_value(const std::function<std::optional<SceneValue>(Document&)>& change) {
     if (!document_ || !painter_) return;
-    const bool is_new = now_ - last_map_change_ > kChangeInterval;
-    last_map_change_ = now_;
+    const bool is_new = now_ - last_change_ > kChangeInterval;
+    last_change_ = now_;
     change_document([&](Document& document) {
-        const MapMeaning before = document.find_meaning(index);
-        document.change_displacement(index, change);
-        painter_->note_meaning(before, is_new);
+        if (const std::optional<SceneValue> before = change(document)) painter_->note_value(*before, is_new);
     });
+}
+
+void Workbench::change_displacement(size_t index, const std::function<void(Displacement&)>& change) {
+    change_value([&](Document& document) { return document.change_displacement(index, change); });
+}
+
+void Workbench::change_material(size_t index, const std::function<void(Material&)>& change) {
+    change_value([&](Document& document) { return document.change_material(index, change); });
+}
+
+void Workbench::change_environment(const std::function<void(Environment&)>& change) {
+    change_value([&](Document& document) { return document.change_environment(change); });
+}
+
+void Workbench::change_light(size_t index, const std::function<void(Light&)>& change) {
+    change_value([&](Document& document) { return document.change_light(index, change); });
 }
 
 void Workbench::note_message() {
@@ -153,7 +167,7 @@ void Workbench::redo() {
 }
 
 void Workbench::take_step(const std::function<std::vector<MapEdit>()>& step) {
-    last_map_change_ = -kChangeInterval;
+    last_change_ = -kChangeInterval;
     attempt([&] {
         std::vector<MapEdit> edits = step();
         edits.empty() ? set_motion(Motion::moving) : send(std::move(edits));

@@ -135,8 +135,12 @@ class Workbench {
     void change_settings(const std::function<void(RenderSettings&)>& change);
     /// Calls `change`, shows what came of it, and reports errors as messages.
     void change_document(const std::function<void(Document&)>& change);
-    /// The same of how a map is meant, which undo() takes back; changes within a second count as one.
+    /// The same of how a map is meant, a material, the environment or a light, which undo() takes back;
+    /// changes of one within a second count as one.
     void change_displacement(size_t index, const std::function<void(Displacement&)>& change);
+    void change_material(size_t index, const std::function<void(Material&)>& change);
+    void change_environment(const std::function<void(Environment&)>& change);
+    void change_light(size_t index, const std::function<void(Light&)>& change);
     Brush& brush() { return brush_; }
     Tool tool() const { return tool_; }
     void set_tool(Tool tool);
@@ -199,6 +203,8 @@ class Workbench {
         bool has_moved = false;
     };
 
+    /// `change` returns what it changed, as it was; nothing: it changed nothing.
+    void change_value(const std::function<std::optional<SceneValue>(Document&)>& change);
     void frame(const std::optional<uint32_t>& object);
     void forget_explanation();
     bool has_edits() const; ///< has_unsaved(), beside the map that was dropped
@@ -274,7 +280,7 @@ class Workbench {
     bool needs_snapshot_ = true, needs_request_ = false;
     bool has_changed_ = false; ///< something that is seen, since the last request
     Motion motion_ = Motion::still;
-    double now_ = 0, last_motion_ = 0, last_poll_ = 0, first_picture_time_ = -1, last_map_change_ = -1;
+    double now_ = 0, last_motion_ = 0, last_poll_ = 0, first_picture_time_ = -1, last_change_ = -1;
     uint64_t wanted_version_ = 0;
     std::shared_ptr<const ShownPicture> picture_;
     std::shared_ptr<const ShownPicture> denoised_; ///< of the same version; null: none

@@ -159,6 +159,37 @@ TEST_F(FrameTest, a_change_of_a_value_with_keys_is_taken_back_and_made_again_at_
     EXPECT_EQ(map().scale.x, 1.5f);
 }
 
+TEST_F(FrameTest, a_material_and_light_that_are_taken_back_at_another_frame_follow_their_keys_again) {
+    open_animated("\"roughness\"", R"({"keys": [[1, 0.25], [5, 0.75]]})");
+    const auto get_material = [&]() -> const Material& { return bench_->document()->scene().materials[0]; };
+    const auto get_strength = [&] { return bench_->document()->scene().environment->strength; };
+    bench_->change_material(0, [](Material& material) { material.roughness = 0.125f; });
+    bench_->change_environment([](Environment& environment) { environment.strength = 2; });
+    bench_->change_material(0, [](Material& material) { material.metallic = 1; });
+    show(3);
+    EXPECT_EQ(get_material().roughness, 0.125f);
+    bench_->undo();
+    EXPECT_EQ(get_material().metallic, 0);
+    EXPECT_EQ(get_material().roughness, 0.125f);
+    bench_->undo();
+    EXPECT_EQ(get_strength(), 1);
+    bench_->undo();
+    EXPECT_EQ(get_material().roughness, 0.5f);
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
+    show(5);
+    EXPECT_EQ(get_material().roughness, 0.75f);
+    bench_->redo();
+    bench_->redo();
+    show(1);
+    EXPECT_EQ(get_material().roughness, 0.125f);
+    EXPECT_EQ(get_strength(), 2);
+    bench_->undo();
+    bench_->undo();
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, render_frame(1));
+}
+
 TEST_F(FrameTest, a_camera_with_keys_moves_until_somebody_else_moves_it) {
     open_animated("\"from\"", R"({"keys": [[1, [0, 0, 4]], [5, [4, 0, 4]]]})");
     const uint64_t content = bench_->document()->content();

@@ -103,6 +103,60 @@ TEST_F(WorkbenchTest, how_a_map_is_meant_and_strokes_are_taken_back_in_their_ord
     EXPECT_FALSE(bench_->has_unsaved());
 }
 
+TEST_F(WorkbenchTest, materials_lights_and_maps_are_taken_back_in_their_order) {
+    Scene scene = make_bumpy_scene();
+    scene.lights.emplace_back();
+    scene.lights[0].direction = {0, 0, -1};
+    save_scene(scene, folder_ / "lit");
+    bench_->open({folder_ / "lit" / "scene.json", {}, {}});
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    const Scene& now = bench_->document()->scene();
+    const std::vector<float> before = bench_->picture()->image.pixels;
+    const float rough = now.materials[0].roughness;
+    bench_->change_displacement(0, [](Displacement& map) { map.axes = {{0, 2, 1}, {1, 1, 1}}; });
+    for (const float roughness : {0.75f, 0.5f, 0.125f}) // one drag of a slider
+        bench_->change_material(0, [&](Material& material) { material.roughness = roughness; });
+    ViewSettings view;
+    apply_values(read_json(R"({"rotate_degrees": 90, "strength": 0.5})"), *bench_, view);
+    bench_->change_light(0, [](Light& light) { light.strength = 3; });
+    ASSERT_TRUE(reach_done());
+    const std::vector<float> changed = bench_->picture()->image.pixels;
+    press_key('Z', {.control = true});
+    EXPECT_EQ(now.lights[0].strength, 1);
+    EXPECT_EQ(now.environment->strength, 0.5f);
+    press_key('Z', {.control = true});
+    EXPECT_EQ(now.environment->strength, 1);
+    EXPECT_EQ(now.environment->rotate_degrees, 0);
+    EXPECT_EQ(now.materials[0].roughness, 0.125f);
+    press_key('Z', {.control = true});
+    EXPECT_EQ(now.materials[0].roughness, rough);
+    EXPECT_NE(now.displacements[0].axes, AxisMap());
+    press_key('Z', {.control = true});
+    EXPECT_EQ(now.displacements[0].axes, AxisMap());
+    EXPECT_FALSE(bench_->can_undo());
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, before);
+    for (int k = 0; k < 4; ++k) press_key('Y', {.control = true});
+    EXPECT_FALSE(bench_->can_redo());
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->picture()->image.pixels, changed);
+}
+
+TEST_F(WorkbenchTest, an_environment_that_was_dropped_stays_where_its_strength_is_taken_back) {
+    open_scene();
+    bench_->change_environment([](Environment& environment) { environment.strength = 0.5f; });
+    Image sky;
+    sky.width = 4, sky.height = 2, sky.channels = {"R", "G", "B"};
+    sky.pixels.assign(24, 0.25f);
+    write_image(sky, folder_ / "sky.hdr");
+    bench_->drop({folder_ / "sky.hdr"});
+    bench_->undo();
+    const Environment& environment = *bench_->document()->scene().environment;
+    EXPECT_EQ(environment.strength, 1);
+    ASSERT_TRUE(environment.texture) << bench_->message();
+    EXPECT_EQ(environment.texture->width, 4u);
+}
+
 TEST_F(WorkbenchTest, a_mesh_opens_with_the_map_that_was_dropped_with_it) {
     bench_->drop({folder_ / "maps" / "bumps.exr", folder_ / "meshes" / "plane.obj"});
     ASSERT_TRUE(reach_done()) << bench_->message();
