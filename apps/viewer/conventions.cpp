@@ -1,6 +1,7 @@
 #include "viewer/conventions.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -17,18 +18,34 @@ bool holds_integers(const Displacement& map) {
     });
 }
 
-} // namespace
-
-void apply_preset(const std::string& preset, Displacement& map) {
+/// Axes and midlevel of a program's maps; all else is no part of it.
+Displacement get_preset(const std::string& preset, const Displacement& map) {
     constexpr const char* kSpaces[] = {"tangent", "object", "world"};
     MapOptions options;
     options.preset = preset;
     options.space = kSpaces[size_t(map.space)];
-    const Displacement meaning = make_map_meaning(options);
+    Displacement meaning = make_map_meaning(options);
+    if (meaning.midlevel == Vec3f{} && holds_integers(map)) meaning.midlevel = {0.5f, 0.5f, 0.5f};
+    return meaning;
+}
+
+} // namespace
+
+void apply_preset(const std::string& preset, Displacement& map) {
+    const Displacement meaning = get_preset(preset, map);
     map.axes = meaning.axes;
     map.midlevel = meaning.midlevel;
     map.has_midlevel = true;
-    if (meaning.midlevel == Vec3f{} && holds_integers(map)) map.midlevel = {0.5f, 0.5f, 0.5f};
+}
+
+std::string find_preset(const Displacement& map, const std::string& chosen) {
+    const auto has_values = [&](const std::string& preset) {
+        const Displacement meaning = get_preset(preset, map);
+        return meaning.axes == map.axes && meaning.midlevel == map.midlevel;
+    };
+    if (!chosen.empty() && has_values(chosen)) return chosen;
+    const auto found = std::ranges::find_if(kPresets, has_values);
+    return found == std::end(kPresets) ? std::string() : *found;
 }
 
 Displacement choose_convention(const std::string& preset, const Displacement& map) {

@@ -17,6 +17,10 @@ inline constexpr const char* kPresets[] = {"blender-brush", "genvdm", "3dcoat", 
 /// midlevel, that of the kind of file. Throws Error{bad_input} for an unknown name.
 void apply_preset(const std::string& preset, Displacement& map);
 
+/// The program whose axes and midlevel the map has, in the space that it is in: `chosen` where that is one,
+/// else the first of kPresets; empty: none has them.
+std::string find_preset(const Displacement& map, const std::string& chosen);
+
 /// The convention in which a program reads maps, to convert `map` to: its space, axes and midlevel, and a
 /// scale of 1. Throws likewise.
 Displacement choose_convention(const std::string& preset, const Displacement& map);

@@ -125,6 +125,16 @@ SceneValue Document::change_displacement(size_t index, const std::function<void(
     return value;
 }
 
+void Document::note_preset(size_t displacement, const std::string& preset) {
+    presets_[scene_.displacements.at(displacement).name] = preset;
+}
+
+std::string Document::find_preset(size_t displacement) const {
+    const Displacement& map = scene_.displacements.at(displacement);
+    const auto chosen = presets_.find(map.name);
+    return viewer::find_preset(map, chosen == presets_.end() ? input_.mesh.map.preset : chosen->second);
+}
+
 SceneValue Document::change_material(size_t index, const std::function<void(Material&)>& change) {
     Material& material = scene_.materials.at(index);
     const Material before = material;

@@ -90,6 +90,10 @@ class Document {
     SceneValue change_light(size_t index, const std::function<void(Light&)>& change);
     /// Nothing where there is none.
     std::optional<SceneValue> change_environment(const std::function<void(Environment&)>& change);
+    /// A program's preset was chosen for a map: several have the same values.
+    void note_preset(size_t displacement, const std::string& preset);
+    /// The one whose values the map has now; empty: none.
+    std::string find_preset(size_t displacement) const;
     /// With a mesh alone it is the light, placed as load_mesh_scene() does it; the environment of a scene
     /// keeps its strength and rotation. Throws as read_texture.
     void load_environment(const std::filesystem::path& file);
@@ -157,6 +161,7 @@ class Document {
     std::optional<Environment> read_environment_;
     std::map<TilePlace, std::shared_ptr<const Texture>> read_; ///< as the reader gave them
     std::map<TileSource, AsideTile> aside_;                    ///< painted maps of other frames
+    std::map<std::string, std::string> presets_; ///< that were chosen last, by names of displacements
     std::vector<std::string> doubts_;
     uint64_t version_ = 1;
     bool has_changes_ = false, is_saved_ = false;

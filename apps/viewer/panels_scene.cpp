@@ -64,6 +64,16 @@ bool edit_word(const char* label, const char* const* words, int count, int& choi
     return ImGui::Combo(label, &choice, words, count);
 }
 
+/// `now`: the one that the map has, empty: none. Returns what was chosen, else nothing.
+std::string choose_preset(const std::string& now) {
+    std::string chosen;
+    if (!ImGui::BeginCombo("preset", now.empty() ? "of a program ..." : now.c_str())) return chosen;
+    for (const char* preset : kPresets)
+        if (ImGui::Selectable(preset, preset == now)) chosen = preset;
+    ImGui::EndCombo();
+    return chosen;
+}
+
 /// True where something of the convention changed.
 bool edit_convention(Displacement& map) {
     constexpr const char* kSpaces[] = {"tangent", "object", "world"};
@@ -183,10 +193,10 @@ void draw_displacement_panel(Workbench& workbench, PanelState& state) {
     choose_item("map", maps, state.displacement);
     Displacement map = maps[state.displacement];
     bool is_changed = false;
-    if (map.type == DisplacementType::vector && ImGui::BeginCombo("preset", "of a program ...")) {
-        for (const char* preset : kPresets)
-            if (ImGui::Selectable(preset)) apply_preset(preset, map), is_changed = true;
-        ImGui::EndCombo();
+    std::string chosen;
+    if (map.type == DisplacementType::vector) {
+        chosen = choose_preset(workbench.document()->find_preset(state.displacement));
+        if (!chosen.empty()) apply_preset(chosen, map), is_changed = true;
     }
     is_changed |= edit_convention(map);
     if (map.type == DisplacementType::vector)
@@ -195,6 +205,7 @@ void draw_displacement_panel(Workbench& workbench, PanelState& state) {
     draw_map_file(workbench, state);
     if (!is_changed) return;
     workbench.change_displacement(state.displacement, [&](Displacement& changed) { changed = map; });
+    if (!chosen.empty()) workbench.document()->note_preset(state.displacement, chosen);
 }
 
 void draw_camera_panel(Workbench& workbench) {

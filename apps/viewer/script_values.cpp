@@ -69,6 +69,7 @@ void set_displacement(const Value& values, Workbench& workbench) {
     }
     if (values.contains("flip_v")) changed.flip_v = values["flip_v"].get<bool>();
     workbench.change_displacement(index, [&](Displacement& map) { map = changed; });
+    if (values.contains("preset")) document->note_preset(index, values["preset"].get<std::string>());
 }
 
 void set_environment(const Value& values, Workbench& workbench) {

@@ -157,6 +157,32 @@ TEST_F(WorkbenchTest, an_environment_that_was_dropped_stays_where_its_strength_i
     EXPECT_EQ(environment.texture->width, 4u);
 }
 
+TEST_F(WorkbenchTest, a_map_names_the_program_whose_values_it_has) {
+    SceneInput input{folder_ / "meshes" / "plane.obj", {}, {}};
+    input.mesh.displacement_map = folder_ / "maps" / "bumps.exr";
+    input.mesh.map.preset = "maya";
+    bench_->open(input);
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    const auto get_preset = [&] { return bench_->document()->find_preset(0); };
+    EXPECT_EQ(get_preset(), "maya"); // and not mudbox, which has the same values
+    ViewSettings view;
+    const auto set = [&](const char* text) { apply_values(read_json(text), *bench_, view); };
+    set(R"({"preset": "cycles"})");
+    EXPECT_EQ(get_preset(), "cycles");
+    bench_->change_displacement(0, [](Displacement& map) { map.scale = {2, 2, 2}; });
+    EXPECT_EQ(get_preset(), "cycles");
+    set(R"({"axes": "t,b,n"})");
+    EXPECT_EQ(get_preset(), "blender-brush"); // the first one
+    set(R"({"axes": "t,-b,n"})");
+    EXPECT_EQ(get_preset(), "");
+    set(R"({"preset": "daz16"})");
+    EXPECT_EQ(get_preset(), "daz16");
+    set(R"({"space": "object", "preset": "mudbox"})");
+    EXPECT_EQ(get_preset(), "mudbox");
+    bench_->undo(); // what was opened has its values too
+    EXPECT_EQ(get_preset(), "mudbox");
+}
+
 TEST_F(WorkbenchTest, a_mesh_opens_with_the_map_that_was_dropped_with_it) {
     bench_->drop({folder_ / "maps" / "bumps.exr", folder_ / "meshes" / "plane.obj"});
     ASSERT_TRUE(reach_done()) << bench_->message();
