@@ -48,7 +48,7 @@ bool Workbench::attempt(const std::function<void()>& body) {
         body();
         return true;
     } catch (const std::exception& error) {
-        message_ = error.what();
+        passing_message_ = message_ = error.what();
         has_news_ = true;
         return false;
     }
@@ -96,6 +96,7 @@ void Workbench::frame(const std::optional<uint32_t>& object) {
 }
 
 void Workbench::change_settings(const std::function<void(RenderSettings&)>& change) {
+    end_message();
     change(settings_);
     needs_snapshot_ = true;
     set_motion(Motion::still);
@@ -103,7 +104,10 @@ void Workbench::change_settings(const std::function<void(RenderSettings&)>& chan
 
 void Workbench::change_document(const std::function<void(Document&)>& change) {
     if (!document_) return;
-    attempt([&] { change(*document_); });
+    end_message();
+    const std::vector<std::string> doubts = document_->doubts();
+    const bool is_doubt = std::ranges::find(doubts, message_) != doubts.end();
+    if (attempt([&] { change(*document_); }) && is_doubt && document_->doubts() != doubts) message_.clear();
     set_motion(Motion::moving);
 }
 
@@ -130,6 +134,10 @@ void Workbench::change_environment(const std::function<void(Environment&)>& chan
 
 void Workbench::change_light(size_t index, const std::function<void(Light&)>& change) {
     change_value([&](Document& document) { return document.change_light(index, change); });
+}
+
+void Workbench::end_message() {
+    if (message_ == passing_message_) message_.clear();
 }
 
 void Workbench::note_message() {
@@ -168,6 +176,7 @@ void Workbench::redo() {
 
 void Workbench::take_step(const std::function<std::vector<MapEdit>()>& step) {
     last_change_ = -kChangeInterval;
+    end_message();
     attempt([&] {
         std::vector<MapEdit> edits = step();
         edits.empty() ? set_motion(Motion::moving) : send(std::move(edits));
@@ -252,7 +261,7 @@ void Workbench::take_denoised() {
         finish_output();
     } catch (const std::exception& error) {
         set_denoised(false);
-        message_ = error.what();
+        passing_message_ = message_ = error.what();
     }
 }
 
@@ -318,8 +327,8 @@ bool Workbench::update(double now) {
     take_denoised();
     if (is_done()) preview_.look();
     if (const std::string error = loop_.state().error; error != last_error_) {
+        if (!error.empty() || message_ == last_error_) message_ = error;
         last_error_ = error;
-        if (!error.empty()) message_ = error;
         needs_snapshot_ = true; // the next session begins with all that was painted
         has_news_ = true;
     }

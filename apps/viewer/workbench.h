@@ -226,6 +226,8 @@ class Workbench {
     void reread(const std::vector<std::filesystem::path>& maps);
     void poll_jobs();
     void note_message();
+    /// A user does something: what the last action led to is told no more.
+    void end_message();
     void take_picture();
     void take_denoised();
     SessionUse choose_use() const;
@@ -290,6 +292,8 @@ class Workbench {
     std::map<std::string, std::string> output_metadata_;
     std::filesystem::path output_; ///< a picture to write when it is done; empty: none
     std::string message_, last_error_, load_error_;
+    std::string passing_message_; ///< one that the next action ends, where it is still shown
+    std::string strokes_message_; ///< that strokes of other frames are not saved; likewise, once they are
     std::deque<std::string> messages_;
     cli::PixelExplanation explanation_;
     std::optional<Vec2f> explained_pixel_;

@@ -75,7 +75,7 @@ void Workbench::start(Load load) {
 
 void Workbench::adopt(Loaded loaded) {
     has_news_ = true;
-    message_ = loaded.error;
+    passing_message_ = message_ = loaded.error;
     load_error_ = loaded.error;
     const bool is_discarded = std::exchange(is_discarded_, false);
     if (!loaded.loaded) {
@@ -238,7 +238,7 @@ void Workbench::adopt(Reread reread) {
     if (edits.empty()) return;
     painter_->end();
     painter_->forget();
-    message_ = "read again: the map changed";
+    passing_message_ = message_ = "read again: the map changed";
     needs_snapshot_ = true;
     if (choose_use() != SessionUse::scenes) return send(std::move(edits));
     document_->note_replaced_tiles(); // the session takes scenes, and no edits
@@ -269,6 +269,7 @@ bool Workbench::save(const std::filesystem::path& file) {
         if (const std::vector<int> frames = document_->list_frames_aside(); !frames.empty())
             message_ += fmt::format(", without what was painted at frame {}: show and save that as well",
                                     fmt::join(frames, ", "));
+        passing_message_ = message_;
         has_news_ = true;
     });
 }
@@ -285,7 +286,7 @@ bool Workbench::save_map(size_t displacement, const std::filesystem::path& file,
         if (!preset.empty()) to = choose_convention(preset, to);
         document_->save_map(displacement, file, to);
         if (!document_->has_painted()) state_.forget_painted();
-        message_ = fmt::format("wrote {}", file.string());
+        passing_message_ = message_ = fmt::format("wrote {}", file.string());
         has_news_ = true;
     });
 }
@@ -303,6 +304,7 @@ void Workbench::write_picture(const std::filesystem::path& file) {
 void Workbench::drop_output(const char* reason) {
     if (output_.empty()) return;
     message_ = fmt::format("{} is not written: {}", std::exchange(output_, {}).filename().string(), reason);
+    passing_message_ = message_;
     note_message();
 }
 
@@ -313,7 +315,7 @@ void Workbench::finish_output() {
         Image image = shown_picture()->image;
         for (const auto& [name, value] : output_metadata_) image.metadata[name] = value;
         write_image(image, file);
-        message_ = fmt::format("wrote {}", file.string());
+        passing_message_ = message_ = fmt::format("wrote {}", file.string());
     });
 }
 

@@ -14,6 +14,7 @@ std::optional<int> Workbench::frame() const {
 
 bool Workbench::show_frame(int frame) {
     if (!this->frame()) return false;
+    end_message();
     wanted_frame_.reset();
     if (frame != this->frame()) wanted_frame_ = frame;
     has_news_ = true;
@@ -89,7 +90,7 @@ void Workbench::adopt(ReadFrame read) {
     if (wanted_frame_ == read.number) wanted_frame_.reset();
     if (!read.frame) {
         timeline_.pause();
-        message_ = fmt::format("frame {}: {}", read.number, read.error);
+        passing_message_ = message_ = fmt::format("frame {}: {}", read.number, read.error);
         return;
     }
     drop_output("another frame is shown");
@@ -110,6 +111,10 @@ void Workbench::adopt(ReadFrame read) {
     has_new_frame_ = true;
     set_motion(Motion::moving);
     tell_strokes(left_frame, strokes);
+    if (!strokes.left.empty())
+        strokes_message_ = message_;
+    else if (message_ == strokes_message_ && !document_->has_strokes_aside())
+        message_.clear();
 }
 
 void Workbench::tell_strokes(int left_frame, const FrameStrokes& strokes) {

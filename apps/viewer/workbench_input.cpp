@@ -76,6 +76,7 @@ void Workbench::press(const InputEvent& event) {
         std::vector<MapEdit> edits = painter_->begin(brush_, *picture_, at.x, at.y);
         if (!painter_->is_active()) return;
         timeline_.pause();
+        end_message();
         send(std::move(edits));
     });
 }

@@ -278,6 +278,9 @@ TEST_F(FrameTest, strokes_on_a_map_of_one_frame_come_back_with_it) {
     EXPECT_FALSE(bench_->document()->has_painted());
     EXPECT_TRUE(bench_->document()->has_strokes_aside());
     EXPECT_EQ(bench_->picture()->image.pixels, render_frame(3));
+    show(2);
+    EXPECT_EQ(bench_->message(), "");
+    show(3);
     ASSERT_TRUE(bench_->save(folder_ / "third.json"));
     EXPECT_EQ(render_file("third.json"), bench_->picture()->image.pixels);
     show(2);
@@ -311,6 +314,7 @@ TEST_F(FrameTest, a_frame_whose_file_is_missing_leaves_what_is_shown) {
     EXPECT_EQ(bench_->frame(), 1);
     EXPECT_NE(bench_->message().find("frame 3"), std::string::npos) << bench_->message();
     show(4);
+    EXPECT_EQ(bench_->message(), "");
     EXPECT_EQ(bench_->picture()->image.pixels, render_frame(4));
 }
 

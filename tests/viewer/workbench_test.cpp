@@ -399,6 +399,55 @@ TEST_F(WorkbenchTest, a_denoised_picture_is_shown_in_place_of_the_noisy_one) {
     EXPECT_EQ(get_channel(bench_->shown_picture()->image, "R"), colour);
 }
 
+TEST_F(WorkbenchTest, a_doubt_is_told_until_the_map_is_mended) {
+    Displacement map = load_scene(folder_ / "scene.json").displacements[0];
+    auto texture = std::make_shared<Texture>(*map.tiles[0].texture);
+    for (uint32_t y = 0; y < 64; ++y)
+        for (uint32_t x = 0; x < 64; ++x) {
+            const Vec3f value = read_texel(*texture, x, y);
+            write_texel(*texture, x, y, {0.5f, 0.5f, 0.5f + value.z});
+        }
+    map.tiles[0].texture = texture;
+    write_map(map, folder_ / "maps" / "other.exr", MapSamples::float32);
+    bench_->drop({folder_ / "meshes" / "plane.obj", folder_ / "maps" / "other.exr"});
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    const std::string doubt = bench_->message();
+    EXPECT_NE(doubt.find("displacement.encoding = signed"), std::string::npos) << doubt;
+    bench_->change_material(0, [](Material& material) { material.roughness = 0.125f; });
+    EXPECT_EQ(bench_->message(), doubt);
+    bench_->change_displacement(0, [](Displacement& mended) { mended.midlevel = {0.5f, 0.5f, 0.5f}; });
+    EXPECT_EQ(bench_->message(), "");
+    ASSERT_TRUE(reach_done());
+    EXPECT_EQ(bench_->message(), "");
+    EXPECT_EQ(bench_->messages().front(), doubt);
+}
+
+TEST_F(WorkbenchTest, what_was_written_is_told_until_the_next_change) {
+    open_scene();
+    const auto save = [&] {
+        ASSERT_TRUE(bench_->save(folder_ / "saved.json")) << bench_->message();
+        ASSERT_TRUE(reach_done());
+        EXPECT_EQ(bench_->message(), "wrote " + (folder_ / "saved.json").string());
+    };
+    save();
+    bench_->change_camera([](OrbitCamera& camera) { camera.orbit(0.1f, 0); });
+    EXPECT_NE(bench_->message(), "");
+    bench_->change_material(0, [](Material& material) { material.roughness = 0.125f; });
+    EXPECT_EQ(bench_->message(), "");
+    save();
+    bench_->undo();
+    EXPECT_EQ(bench_->message(), "");
+    bench_->set_tool(Tool::paint);
+    save();
+    drag(18, 14, 32, 18);
+    EXPECT_EQ(bench_->message(), "");
+    EXPECT_FALSE(bench_->save(folder_ / "scene.json")); // which was opened
+    ASSERT_TRUE(reach_done());
+    EXPECT_NE(bench_->message(), "");
+    bench_->change_settings([](RenderSettings& settings) { settings.image.spp = 2; });
+    EXPECT_EQ(bench_->message(), "");
+}
+
 TEST_F(WorkbenchTest, values_that_mean_nothing_are_refused) {
     open_scene();
     ViewSettings view;
