@@ -124,6 +124,8 @@ int convert_map_file(const ConvertOptions& options) {
     MapOptions meaning = options.from;
     if (meaning.dequantize) meaning.filter = "cubic"; // dequantize asks for a smooth one
     const Displacement from = load_map(options.input, meaning, warnings);
+    print_warnings(options, warnings);
+    warnings.clear();
     std::optional<Mesh> mesh;
     if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()}, warnings);
     print_warnings(options, warnings);

@@ -166,20 +166,25 @@ SceneValue Document::change_light(size_t index, const std::function<void(Light&)
 }
 
 void Document::load_environment(const std::filesystem::path& file) {
-    auto texture = std::make_shared<const Texture>(read_texture(file));
-    if (!scene_.environment) scene_.environment.emplace();
-    const Environment before = *scene_.environment;
-    scene_.environment->texture = std::move(texture);
-    if (is_mesh_file(input_.file)) place_light();
+    const Environment before = scene_.environment.value_or(Environment());
+    Environment sky = before;
+    sky.texture = std::make_shared<const Texture>(read_texture(file));
+    if (is_mesh_file(input_.file)) {
+        place_light(std::move(sky));
+        input_.mesh.environment = file;
+    } else {
+        scene_.environment = std::move(sky);
+    }
     changed_.note(before, *scene_.environment);
     changes_.environment = file;
     touch();
 }
 
-void Document::place_light() {
+/// Changes nothing where it throws.
+void Document::place_light(Environment sky) {
     Scene lit;
     lit.objects = scene_.objects, lit.materials = scene_.materials;
-    lit.displacements = scene_.displacements, lit.environment = scene_.environment;
+    lit.displacements = scene_.displacements, lit.environment = std::move(sky);
     lit.meshes = std::move(scene_.meshes);
     std::exception_ptr error;
     try {

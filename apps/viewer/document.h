@@ -138,7 +138,7 @@ class Document {
     void put_aside(const Scene& next, FrameStrokes& strokes);
     void take_back(Scene& next, FrameStrokes& strokes);
     void touch();
-    void place_light();
+    void place_light(Environment sky);
     /// Puts what was painted into the scene.
     void commit();
     /// No file of a map is there, or this document wrote it for that map of that frame. `pattern` holds

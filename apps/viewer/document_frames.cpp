@@ -79,6 +79,8 @@ void Document::take_back(Scene& next, FrameStrokes& strokes) {
             painted_maps_.insert(map.name);
             if (!node.mapped().is_saved) unsaved_.insert(map.name), returned.insert(map.name);
         }
+    // Maps that were read again from the same file have not left.
+    std::erase_if(strokes.left, [&](const Displacement& map) { return returned.erase(map.name) > 0; });
     strokes.returned.assign(returned.begin(), returned.end());
 }
 
@@ -142,6 +144,7 @@ SceneValue Document::put_back(const Environment& was, size_t) {
 }
 
 SceneValue Document::put_back(const Light& was, size_t index) {
+    if (index >= scene_.lights.size()) return {index, was, 0}; // an environment has taken its place
     return change_light(index, [&](Light& light) { light = was; });
 }
 

@@ -187,10 +187,7 @@ void Interface::draw_explanation() {
 
 /// What was not saved is saved, all of it, or may go.
 bool Interface::settle(EndAnswer answer, const std::filesystem::path& file) {
-    if (answer == EndAnswer::leave) {
-        workbench_.discard();
-        return true;
-    }
+    if (answer == EndAnswer::leave) return true;
     return answer == EndAnswer::save && workbench_.save(file) && !workbench_.has_unsaved();
 }
 
@@ -212,6 +209,7 @@ void Interface::ask_at_end() {
     if (answer == EndAnswer::none) return;
     is_asking_ = false;
     may_end_ = settle(answer, file);
+    if (answer == EndAnswer::leave) workbench_.discard();
 }
 
 /// Somebody wants to end, and nothing is lost by it, or it is meant.

@@ -52,8 +52,13 @@ int run_viewer(const ViewerOptions& options, double start) {
                   size ? size->second + Interface::kLineHeight : kWindowHeight, "Relief");
     Interface interface(window, workbench, size);
     // What was painted is kept then, too.
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-        std::signal(signal, [](int received) { received_signal = received; });
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const auto end_at_rest = [](int received) {
+            received_signal = received;
+            std::signal(received, SIG_DFL); // a second one does not wait
+        };
+        if (std::signal(signal, end_at_rest) == SIG_IGN) std::signal(signal, SIG_IGN);
+    }
     const auto end = [&] {
         refuse_nothing_shown(workbench);
         return received_signal != 0 ? cli::kExitSignalBase + received_signal : cli::kExitDone;

@@ -116,7 +116,9 @@ EndAnswer draw_end_question(const std::string& file, const char* leave) {
     ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return answer;
     ImGui::Text("Save what was changed as %s?", file.c_str());
-    if (ImGui::Button("save") || ImGui::IsKeyPressed(ImGuiKey_Enter, false)) answer = EndAnswer::save;
+    // Not with the key that chose what is asked about.
+    const bool is_entered = !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(ImGuiKey_Enter, false);
+    if (ImGui::Button("save") || is_entered) answer = EndAnswer::save;
     ImGui::SameLine();
     if (ImGui::Button(leave)) answer = EndAnswer::leave;
     ImGui::SameLine();

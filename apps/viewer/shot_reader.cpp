@@ -27,6 +27,7 @@ void ShotReader::drop_rewritten_files(int frame) {
     std::map<std::filesystem::path, std::filesystem::file_time_type> now;
     bool has_changed = false;
     for (const std::filesystem::path& file : shot_.list_files(frame)) {
+        if (file == file_) continue; // whoever watches it says what becomes of changes
         std::error_code code;
         now[file] = std::filesystem::last_write_time(file, code);
         const auto known = times_.find(file);

@@ -51,7 +51,10 @@ std::filesystem::path UserState::set_aside(const std::filesystem::path& input, c
                                            int frame) {
     if (folder_.empty()) return {};
     const std::filesystem::path file = name_aside(input, map, frame);
-    for (const MapTile& tile : map.tiles) kept_.erase(name_tile(file, tile.udim));
+    for (const MapTile& tile : map.tiles) {
+        const std::filesystem::path name = name_tile(file, tile.udim);
+        kept_.erase(name), aside_.insert(name);
+    }
     writer_.write(file, map);
     return file;
 }
@@ -114,7 +117,7 @@ void UserState::keep_now(Document& document) {
     if (!folder_.empty() && document.has_painted()) write_painted(document);
     writer_.wait();
     writer_.forget();
-    kept_.clear();
+    kept_.clear(), aside_.clear();
     last_count_ = 0;
 }
 
@@ -160,6 +163,13 @@ void UserState::forget_painted() {
     writer_.forget();
     std::error_code ignored;
     for (const std::filesystem::path& file : std::exchange(kept_, {})) std::filesystem::remove(file, ignored);
+}
+
+void UserState::discard() {
+    kept_.merge(aside_);
+    aside_.clear();
+    forget_painted();
+    last_count_ = 0;
 }
 
 } // namespace relief::viewer

@@ -41,6 +41,8 @@ class UserState {
     void take_back(const std::filesystem::path& input, const Displacement& map, int frame);
     /// The document was saved: what this run kept of it goes. Files of earlier runs stay.
     void forget_painted();
+    /// What is not saved may go: what this run kept of the document goes, of other frames as well.
+    void discard();
     /// Why painted maps could not be written, since the last call.
     std::vector<std::string> take_errors() { return writer_.take_errors(); }
     /// Maps of a scene or mesh that were painted and not saved before it was closed, or a run crashed. Gives
@@ -56,7 +58,8 @@ class UserState {
 
     std::filesystem::path folder_;
     MapWriter writer_;
-    std::set<std::filesystem::path> kept_; ///< files of this run, of the document that is open
+    std::set<std::filesystem::path> kept_;  ///< files of this run, of the document that is open
+    std::set<std::filesystem::path> aside_; ///< those that were set aside, of them or not
     double last_write_ = 0;
     uint64_t last_count_ = 0; ///< Document::paint_count() then
 };

@@ -65,7 +65,7 @@ void complete_viewer_options(ViewerOptions& o) {
     cli::check_map_options(o.input.mesh);
     cli::check_map_words(o.input.mesh.map);
     const std::filesystem::path& map = o.input.mesh.displacement_map;
-    const bool has_tiles = map.string().find("<UDIM>") != std::string::npos;
+    const bool has_tiles = map.string().find('<') != std::string::npos; // a token
     for (const std::filesystem::path& file : {o.input.file, o.script, o.input.mesh.environment, map})
         if (!file.empty() && !(has_tiles && file == map) && !std::filesystem::exists(file))
             throw Error(ErrorKind::bad_input, {"there is no such file", file.string(), ""});

@@ -58,10 +58,15 @@ class Workbench {
     /// What a user wants to open: at once, or, where something is not saved, once open_asked() is called.
     void ask_to_open(const std::vector<std::filesystem::path>& files);
     bool is_asked_to_open() const { return !asked_files_.empty(); }
-    void open_asked() { drop(std::exchange(asked_files_, {})); }
+    /// What is not saved may go, once another scene has come.
+    void open_asked() {
+        discards_ = true;
+        drop(std::exchange(asked_files_, {}));
+        discards_ = false;
+    }
     void forget_asked() { asked_files_.clear(); }
     bool save(const std::filesystem::path& file);
-    /// What is not saved is not wanted: it is not kept when the document goes.
+    /// What is not saved is not kept at the end, either.
     void discard();
     /// In the convention of a preset (conventions.h); empty: in that which the map has.
     bool save_map(size_t displacement, const std::filesystem::path& file, const std::string& preset = {});
@@ -173,11 +178,11 @@ class Workbench {
     struct Load {
         SceneInput input;
         bool keeps_camera = false, has_dropped_map = false;
+        bool discards = false; ///< what was painted before and is not saved
     };
     struct Loaded {
-        SceneInput input;
+        Load of;
         std::optional<LoadedInput> loaded;
-        bool keeps_camera = false, has_dropped_map = false;
         std::string error;
     };
     struct ReadFrame {
@@ -274,7 +279,7 @@ class Workbench {
     uint64_t frame_version_ = 0;      ///< of the first request of the frame that is shown
     Camera scene_camera_;
     bool has_own_camera_ = false; ///< somebody moved it
-    bool has_dropped_map_ = false, is_discarded_ = false;
+    bool has_dropped_map_ = false, discards_ = false, is_discarded_ = false;
 
     std::shared_ptr<const SharedScene> snapshot_;
     uint64_t snapshot_version_ = 0;

@@ -46,12 +46,23 @@ bool is_environment(const std::filesystem::path& file) { return cli::get_lower_e
 
 bool is_map(const std::filesystem::path& file) { return cli::get_kind(file) == cli::FileKind::map; }
 
+/// Maps and environments that come with a mesh, or onto it.
+SceneInput add_files(SceneInput input, const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& file : files)
+        if (is_environment(file))
+            input.mesh.environment = file;
+        else if (is_map(file))
+            input.mesh.displacement_map = name_pattern(file);
+    return input;
+}
+
 } // namespace
 
 void Workbench::open(const SceneInput& input) { load({input}); }
 
 void Workbench::load(Load load) {
     if (load.input.mesh.reader.program.empty()) load.input.mesh.reader = cli::make_mesh_reader();
+    load.discards |= discards_;
     if (loading_.valid()) // to assign to it would wait
         next_load_ = std::move(load);
     else
@@ -62,9 +73,9 @@ void Workbench::start(Load load) {
     message_ = fmt::format("loading {}", load.input.file.filename().string());
     has_news_ = true;
     loading_ = std::async(std::launch::async, [load = std::move(load), on_news = on_news_]() mutable {
-        Loaded loaded{std::move(load.input), std::nullopt, load.keeps_camera, load.has_dropped_map, {}};
+        Loaded loaded{std::move(load), std::nullopt, {}};
         try {
-            loaded.loaded = load_input(loaded.input);
+            loaded.loaded = load_input(loaded.of.input);
         } catch (const std::exception& error) {
             loaded.error = error.what();
         }
@@ -77,27 +88,26 @@ void Workbench::adopt(Loaded loaded) {
     has_news_ = true;
     passing_message_ = message_ = loaded.error;
     load_error_ = loaded.error;
-    const bool is_discarded = std::exchange(is_discarded_, false);
     if (!loaded.loaded) {
         watch_files();
         return;
     }
     const bool is_first = !document_;
-    if (!loaded.keeps_camera) drop_output("another file is open");
+    if (!loaded.of.keeps_camera) drop_output("another file is open");
     painter_.reset();
-    if (document_ && !is_discarded) state_.keep_now(*document_);
+    if (document_) loaded.of.discards ? state_.discard() : state_.keep_now(*document_);
     shot_ = loaded.loaded->shot;
     wanted_frame_.reset();
     timeline_ = {};
     if (shot_) timeline_ = Timeline(loaded.loaded->frames, loaded.loaded->scene.picture.fps.value_or(0));
-    document_ = std::make_unique<Document>(loaded.input, std::move(*loaded.loaded));
-    has_dropped_map_ = loaded.has_dropped_map;
+    document_ = std::make_unique<Document>(loaded.of.input, std::move(*loaded.loaded));
+    has_dropped_map_ = loaded.of.has_dropped_map;
     painter_ = std::make_unique<Painter>(*document_);
     ++scene_count_;
     has_new_frame_ = true;
     const Scene& scene = document_->scene();
     scene_camera_ = scene.camera;
-    if (is_first || !loaded.keeps_camera) {
+    if (is_first || !loaded.of.keeps_camera) {
         camera_.set(scene.camera);
         has_own_camera_ = false;
     }
@@ -109,9 +119,9 @@ void Workbench::adopt(Loaded loaded) {
     if (!given_.seed) image.seed = picture.seed.value_or(0);
     if (!scene.warnings.empty()) message_ = name_panels(scene.warnings.front());
     if (!document_->doubts().empty()) message_ = document_->doubts().front();
-    if (const auto painted = state_.claim_painted(loaded.input.file); !painted.empty())
+    if (const auto painted = state_.claim_painted(loaded.of.input.file); !painted.empty())
         message_ = fmt::format("painted before and not saved: {}", painted.front().string());
-    state_.add_recent(loaded.input.file);
+    state_.add_recent(loaded.of.input.file);
     forget_explanation();
     selected_object_.reset();
     needs_snapshot_ = true;
@@ -139,18 +149,14 @@ void Workbench::ask_to_open(const std::vector<std::filesystem::path>& files) {
 void Workbench::drop(const std::vector<std::filesystem::path>& files) {
     const auto mesh = std::ranges::find_if(files, is_mesh_file);
     if (mesh == files.end()) {
+        const bool is_light = std::ranges::all_of(files, is_environment);
+        const bool is_for_mesh = document_ && is_mesh_file(document_->input().file) && !is_light;
+        if (is_for_mesh && std::ranges::all_of(files, is_map))
+            return load({add_files(document_->input(), files), true, true});
         for (const std::filesystem::path& file : files) drop_alone(file);
         return;
     }
-    SceneInput input{*mesh, {}, {}};
-    for (const std::filesystem::path& file : files) {
-        if (!is_map(file)) continue;
-        if (is_environment(file))
-            input.mesh.environment = file;
-        else
-            input.mesh.displacement_map = name_pattern(file);
-    }
-    open(input);
+    open(add_files({*mesh, {}, {}}, files));
 }
 
 void Workbench::drop_alone(const std::filesystem::path& file) {
@@ -166,14 +172,8 @@ void Workbench::drop_alone(const std::filesystem::path& file) {
         watch_files();
         return;
     }
-    SceneInput input = document_->input();
-    if (!is_mesh_file(input.file)) {
-        message_ = "a map goes onto a mesh alone; a scene names its maps itself";
-        has_news_ = true;
-        return;
-    }
-    input.mesh.displacement_map = name_pattern(file);
-    load({input, true, true});
+    message_ = "a map goes onto a mesh alone; a scene names its maps itself";
+    has_news_ = true;
 }
 
 /// Maps come as edits; of anything else the whole scene is read again.
@@ -275,7 +275,7 @@ bool Workbench::save(const std::filesystem::path& file) {
 }
 
 void Workbench::discard() {
-    state_.forget_painted();
+    state_.discard();
     is_discarded_ = true;
 }
 

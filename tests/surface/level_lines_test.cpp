@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "relief/half.h"
 #include "support/targets.h"
 #include "surface/test_scenes.h"
 
@@ -31,6 +32,35 @@ TEST(LevelLines, are_the_same_many_points_at_once_and_one_by_one) {
             expect_lines_of_definition(test::make_random_grid(6, 5, 0.4f, 9), displacement);
             if (testing::Test::HasFatalFailure()) return;
         }
+}
+
+TEST(LevelLines, follow_smooth_maps_of_floats_and_halves) {
+    for (const bool has_halves : {false, true})
+        for (const WrapMode wrap : {WrapMode::clamp, WrapMode::repeat, WrapMode::mirror, WrapMode::black}) {
+            const std::shared_ptr<Texture> noise = test::make_noise(40, 30, 0.2f, 5);
+            for (const float value : noise->floats)
+                if (has_halves) noise->halves.push_back(float_to_half(value));
+            if (has_halves) noise->floats.clear();
+            Displacement displacement = test::make_displacement(noise);
+            displacement.filter = MapFilter::bspline, displacement.wrap = wrap;
+            Mesh mesh = test::make_random_grid(4, 4, 0.4f, 3);
+            for (Vec2f& uv : mesh.uvs) uv = {uv.x * 3.7f - 1.2f, uv.y * 2.9f - 0.8f};
+            expect_lines_of_definition(mesh, displacement);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+}
+
+TEST(LevelLines, cross_borders_of_tiles) {
+    Displacement displacement = test::make_displacement(test::make_noise(32, 32, 0.1f, 4));
+    displacement.is_udim = true;
+    displacement.tiles.push_back(displacement.tiles[0]);
+    displacement.tiles[1].udim = 1002;
+    Mesh mesh = test::make_random_grid(4, 4, 0.3f, 2);
+    for (Vec2f& uv : mesh.uvs) uv.x *= 2;
+    mesh.subdivision.scheme = SubdivisionScheme::catmark;
+    expect_lines_of_definition(mesh, displacement);
+    mesh.subdivision = {};
+    expect_lines_of_definition(mesh, displacement);
 }
 
 TEST(LevelLines, follow_smooth_bases_and_need_no_map) {

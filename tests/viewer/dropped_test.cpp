@@ -1,6 +1,7 @@
 // Files that are dropped onto a mesh are changes of it, and scenes are saved under names of their own.
+#include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +66,40 @@ TEST_F(DroppedTest, an_environment_lights_a_mesh_as_it_does_when_it_is_opened_wi
     EXPECT_EQ(render_file("lit.json"), bench_->picture()->image.pixels);
 }
 
+TEST_F(DroppedTest, a_map_and_an_environment_come_together_and_stay_together) {
+    const std::filesystem::path sky = write_sky();
+    bench_->drop({folder_ / "maps" / "bumps.exr", sky});
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_EQ(bench_->document()->scene().displacements.size(), 1u) << bench_->message();
+    EXPECT_TRUE(bench_->document()->scene().lights.empty());
+    bench_->drop({folder_ / "meshes" / "plane.obj"});
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_FALSE(bench_->document()->scene().lights.empty());
+    bench_->drop({sky});
+    bench_->drop({folder_ / "maps" / "bumps.exr"}); // does not take the light away
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_EQ(bench_->document()->scene().displacements.size(), 1u);
+    EXPECT_TRUE(bench_->document()->scene().lights.empty());
+}
+
+TEST_F(DroppedTest, an_environment_that_cannot_be_read_changes_nothing) {
+    bench_->change_light(0, [](Light& light) { light.strength = 3; });
+    std::ofstream(folder_ / "bad.hdr") << "#?RADIANCE";
+    bench_->drop({folder_ / "bad.hdr"});
+    EXPECT_NE(bench_->message().find("bad.hdr"), std::string::npos) << bench_->message();
+    EXPECT_EQ(bench_->document()->scene().environment->texture, nullptr);
+    EXPECT_EQ(bench_->document()->scene().lights.at(0).strength, 3);
+}
+
+TEST_F(DroppedTest, a_light_that_an_environment_replaced_is_not_changed_back) {
+    bench_->change_light(0, [](Light& light) { light.strength = 3; });
+    bench_->drop({write_sky()});
+    ASSERT_TRUE(bench_->can_undo());
+    bench_->undo();
+    ASSERT_TRUE(reach_done()) << bench_->message();
+    EXPECT_TRUE(bench_->document()->scene().lights.empty());
+}
+
 TEST_F(DroppedTest, a_scene_takes_the_place_of_no_file_of_another_kind) {
     drop_map();
     const std::filesystem::path mesh = folder_ / "meshes" / "other.obj";
@@ -91,7 +126,8 @@ TEST_F(DroppedTest, a_picture_has_the_name_and_the_look_that_were_chosen) {
 TEST(Panels, say_warnings_in_their_own_words) {
     EXPECT_EQ(name_panels("write displacement.axes = t,n,b or displacement.scale"),
               "write axes = t,n,b or scale");
-    EXPECT_EQ(name_panels("nothing"), "nothing");
+    EXPECT_EQ(name_panels("displacement 'displacement.1001' of displacement.exr"),
+              "displacement 'displacement.1001' of displacement.exr");
 }
 
 } // namespace relief::viewer

@@ -163,6 +163,20 @@ TEST_F(KeptPaint, what_was_set_aside_is_written_again_where_it_was_painted_on_al
     EXPECT_EQ(read_height(file), 0.5f);
 }
 
+TEST_F(KeptPaint, of_other_frames_goes_with_what_is_discarded) {
+    Document document = open_document();
+    paint(document, 0.25f);
+    const std::shared_ptr<const SharedScene> scene = document.snapshot();
+    {
+        UserState state(this->state());
+        const auto file = state.set_aside(document.input().file, scene->scene.displacements[0], 2);
+        ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(file); }));
+        state.discard();
+        EXPECT_FALSE(std::filesystem::exists(file));
+    }
+    EXPECT_TRUE(UserState(this->state()).claim_painted(document.input().file).empty());
+}
+
 TEST_F(KeptPaint, a_file_that_comes_later_is_reported) {
     FileWatch watch;
     watch.watch({folder_ / "late.txt"});
@@ -190,13 +204,23 @@ TEST_F(PaintedWorkbench, what_was_painted_is_kept_at_the_end) {
 
 TEST_F(PaintedWorkbench, what_was_discarded_is_not_kept) {
     const std::filesystem::path file = bench_->document()->input().file;
-    bench_->discard();
-    bench_->open({file, {}, {}});
+    bench_->ask_to_open({file});
+    ASSERT_TRUE(bench_->is_asked_to_open());
+    bench_->open_asked();
     ASSERT_TRUE(reach([&] { return !bench_->is_loading(); }));
     EXPECT_EQ(bench_->message().find("painted before"), std::string::npos) << bench_->message();
     write_texel(bench_->document()->paint_tile(0, 1001), 12, 20, {0, 0, 0.5f});
-    bench_.reset(); // that was not meant
+    bench_->ask_to_open({folder_ / "maps" / "bumps.exr"});
+    bench_->open_asked(); // opens nothing, so that nothing goes
+    bench_.reset();
     EXPECT_EQ(UserState(folder_ / "state").claim_painted(file).size(), 1u);
+}
+
+TEST_F(PaintedWorkbench, what_was_discarded_at_the_end_is_not_kept) {
+    const std::filesystem::path file = bench_->document()->input().file;
+    bench_->discard();
+    bench_.reset();
+    EXPECT_EQ(UserState(folder_ / "state").claim_painted(file).size(), 0u);
 }
 
 TEST_F(PaintedWorkbench, another_scene_does_not_take_it_away) {

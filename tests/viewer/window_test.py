@@ -184,13 +184,15 @@ def check_mistakes(viewer):
 
 
 def check_signal(viewer):
-    """What ends the viewer from outside ends it as a user does: painted maps are kept then."""
+    """A signal ends the viewer as a user does."""
     (viewer.folder / "waits.jsonl").write_text('{"wait": "picture"}\n{"screenshot": "waits.png"}\n{"wait": 60}\n')
+    (viewer.folder / "waits.png").unlink(missing_ok=True)  # of an earlier run
     process = subprocess.Popen([viewer.relief, "view", "pumpkin/scene.json", "--size", "64x36", "--script", "waits.jsonl"],
                                cwd=viewer.folder, env=viewer.environment)
     until = time.monotonic() + 60
     while not (viewer.folder / "waits.png").exists() and time.monotonic() < until:
         time.sleep(0.1)
+    assert (viewer.folder / "waits.png").exists()
     process.send_signal(signal.SIGTERM)
     assert process.wait(30) == 128 + signal.SIGTERM
     result = viewer.run("view", "pumpkin/meshes/pumpkin.obj", "--vdm", "nowhere.exr")

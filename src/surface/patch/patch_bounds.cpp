@@ -40,7 +40,7 @@ Interval operator*(const Interval& a, double b) {
 /// A vertex in double precision.
 struct CornerFrame {
     std::array<double, 3> position;
-    std::array<std::array<double, 3>, 3> frame; // [coordinate][t, b, n]
+    std::array<std::array<double, 3>, 3> frame{}; // [coordinate][t, b, n]
     std::array<double, 2> uv;
 };
 
