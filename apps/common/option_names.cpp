@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include "common/whole_names.h"
+
 namespace relief::cli {
 
 namespace {
@@ -53,21 +55,10 @@ constexpr std::array<OptionName, 38> kOptions{{
     {"available_isas()", "`relief devices`"},
 }};
 
-bool is_part_of_name(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '/' || c == '.' || c == '-';
-}
-
 void replace_name(std::string& text, const OptionName& name) {
     constexpr std::string_view kEquals = " = ";
-    for (size_t at = 0; (at = text.find(name.setting, at)) != std::string::npos;) {
+    for (size_t at = 0; (at = find_whole_name(text, name.setting, at)) != std::string::npos;) {
         const size_t end = at + name.setting.size();
-        const bool is_whole = (at == 0 || !is_part_of_name(text[at - 1])) &&
-                              (end == text.size() || !is_part_of_name(text[end]));
-        if (!is_whole) {
-            at = end;
-            continue;
-        }
         const bool has_value = std::string_view(text).substr(end).starts_with(kEquals);
         std::string option(name.option);
         if (has_value) option += ' ';

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string_view>
 #include <utility>
 
 #include "relief/io.h"
@@ -60,20 +59,6 @@ void set_axis(AxisMap& axes, size_t channel, uint8_t axis, int8_t sign) {
     for (size_t other = 0; other < 3; ++other)
         if (other != channel && axes.axis[other] == axis) std::swap(axes.axis[other], axes.axis[channel]);
     axes.sign[channel] = sign;
-}
-
-std::string name_panels(std::string warning) {
-    constexpr std::string_view kStart = "displacement.";
-    constexpr std::string_view kKeys[] = {"axes",     "space", "scale",  "midlevel", "type",    "wrap",
-                                          "encoding", "frame", "filter", "flip_v",   "lengths", "dequantize"};
-    for (size_t at = 0; (at = warning.find(kStart, at)) != std::string::npos; ++at) {
-        // Files and maps may have such names.
-        const std::string_view rest = std::string_view(warning).substr(at + kStart.size());
-        const auto key = std::ranges::find_if(kKeys, [&](std::string_view k) { return rest.starts_with(k); });
-        const bool is_word = at == 0 || warning[at - 1] == ' ' || warning[at - 1] == '(';
-        if (is_word && key != std::end(kKeys)) warning.erase(at, kStart.size());
-    }
-    return warning;
 }
 
 } // namespace relief::viewer

@@ -25,9 +25,6 @@ std::string find_preset(const Displacement& map, const std::string& chosen);
 /// scale of 1. Throws likewise.
 Displacement choose_convention(const std::string& preset, const Displacement& map);
 
-/// A warning of the library in the words of the panels: "displacement.axes" becomes "axes".
-std::string name_panels(std::string warning);
-
 /// Channel `channel` moves along `axis` with `sign`; the channel that did so before takes the axis that is
 /// free now.
 void set_axis(AxisMap& axes, size_t channel, uint8_t axis, int8_t sign);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/whole_names.h"
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
@@ -28,7 +29,7 @@ MapTile& find_map_tile(Displacement& map, int udim) {
 std::vector<std::string> list_doubts(const Scene& scene) {
     std::vector<std::string> texts;
     for (const Finding& finding : find_doubtful_assumptions(scene))
-        texts.push_back(name_panels(finding.text));
+        texts.push_back(cli::name_map_keys(finding.text));
     return texts;
 }
 

@@ -144,7 +144,6 @@ SceneValue Document::put_back(const Environment& was, size_t) {
 }
 
 SceneValue Document::put_back(const Light& was, size_t index) {
-    if (index >= scene_.lights.size()) return {index, was, 0}; // an environment has taken its place
     return change_light(index, [&](Light& light) { light = was; });
 }
 

@@ -4,20 +4,20 @@
 
 namespace relief::viewer {
 
-FileWatch::Stamp FileWatch::read_stamp(const std::filesystem::path& file) {
+FileStamp read_stamp(const std::filesystem::path& file) {
     std::error_code code;
-    Stamp stamp;
+    FileStamp stamp;
     if (!std::filesystem::is_regular_file(file, code)) return stamp;
     stamp.time = std::filesystem::last_write_time(file, code);
     stamp.bytes = std::filesystem::file_size(file, code);
-    return code ? Stamp() : stamp;
+    return code ? FileStamp() : stamp;
 }
 
 void FileWatch::watch(const std::vector<std::filesystem::path>& files) {
     std::map<std::filesystem::path, Watched> watched;
     for (const std::filesystem::path& file : files) {
         const auto found = files_.find(file);
-        const Stamp stamp = found == files_.end() ? read_stamp(file) : Stamp();
+        const FileStamp stamp = found == files_.end() ? read_stamp(file) : FileStamp();
         watched[file] = found == files_.end() ? Watched{stamp, stamp} : found->second;
     }
     files_ = std::move(watched);
@@ -26,17 +26,17 @@ void FileWatch::watch(const std::vector<std::filesystem::path>& files) {
 void FileWatch::accept(const std::filesystem::path& file) {
     const auto found = files_.find(file);
     if (found == files_.end()) return;
-    const Stamp stamp = read_stamp(file);
+    const FileStamp stamp = read_stamp(file);
     found->second = {stamp, stamp};
 }
 
 std::vector<std::filesystem::path> FileWatch::poll() {
     std::vector<std::filesystem::path> changed;
     for (auto& [file, watched] : files_) {
-        const Stamp now = read_stamp(file);
+        const FileStamp now = read_stamp(file);
         const bool is_quiet = now == watched.last;
         watched.last = now;
-        if (!is_quiet || now == watched.known || now == Stamp()) continue;
+        if (!is_quiet || now == watched.known || now == FileStamp()) continue;
         watched.known = now;
         changed.push_back(file);
     }

@@ -8,6 +8,14 @@
 
 namespace relief::viewer {
 
+/// What tells two states of a file apart; as it is made where there is none.
+struct FileStamp {
+    std::filesystem::file_time_type time{};
+    uint64_t bytes = 0;
+    friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+FileStamp read_stamp(const std::filesystem::path& file);
+
 class FileWatch {
   public:
     /// Watches these files instead of others: as they are now, or as they were reported last. Those that are
@@ -21,15 +29,9 @@ class FileWatch {
     std::vector<std::filesystem::path> poll();
 
   private:
-    struct Stamp {
-        std::filesystem::file_time_type time{};
-        uint64_t bytes = 0;
-        friend bool operator==(const Stamp&, const Stamp&) = default;
-    };
     struct Watched {
-        Stamp known, last;
+        FileStamp known, last;
     };
-    static Stamp read_stamp(const std::filesystem::path& file);
 
     std::map<std::filesystem::path, Watched> files_;
 };

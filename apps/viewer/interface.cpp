@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "viewer/signals.h"
+
 namespace relief::viewer {
 
 namespace {
@@ -132,6 +134,9 @@ void Interface::draw_paths(ImDrawList& list) {
 }
 
 void Interface::draw_panels() {
+    workbench_.set_output(
+        state_.picture_file,
+        {{"relief:display", state_.display}, {"relief:exposure", fmt::format("{:g}", state_.view.exposure)}});
     const float scale = window_.content_scale(), width = kPanelWidth * scale;
     ImGui::SetNextWindowPos({float(window_.width()) - width, 0});
     ImGui::SetNextWindowSize({width, float(window_.height())});
@@ -239,9 +244,9 @@ void Interface::draw() {
     window_.end_frame();
 }
 
-void Interface::run(ScriptRunner* script, double start, bool (*is_terminated)()) {
+void Interface::run(ScriptRunner* script, double start) {
     int frames = kRestFrames;
-    while (!is_terminated() && !has_ended() && !(script && script->wants_to_end())) {
+    while (get_signal() == 0 && !has_ended() && !(script && script->wants_to_end())) {
         const bool is_busy = workbench_.is_moving() || (script && !script->is_done());
         window_.wait_events(frames > 0 ? 0 : is_busy ? kMovingWait : kIdleWait);
         place_picture();

@@ -21,9 +21,9 @@ class Interface {
     /// `fixed_size`: of the picture; nothing: it fills what the panels leave.
     Interface(Window& window, Workbench& workbench, std::optional<std::pair<int, int>> fixed_size);
 
-    /// Until the user or the script ends it, or `is_terminated` says so, which is asked ten times a second.
-    /// `script` may be null. `start`: of the clock that steady_clock is.
-    void run(ScriptRunner* script, double start, bool (*is_terminated)());
+    /// Until the user, the script or a signal ends it. `script` may be null. `start`: of the clock that
+    /// steady_clock is.
+    void run(ScriptRunner* script, double start);
     ViewSettings& view() { return state_.view; }
 
     /// Pixels beside and below the picture, at a content scale of 1.

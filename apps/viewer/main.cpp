@@ -1,5 +1,4 @@
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -16,6 +15,7 @@
 #include "relief/io.h"
 #include "viewer/interface.h"
 #include "viewer/serve.h"
+#include "viewer/signals.h"
 #include "viewer/viewer_options.h"
 
 namespace relief::viewer {
@@ -24,16 +24,6 @@ namespace {
 
 /// Of a window whose picture has no size of its own.
 constexpr int kWindowWidth = 1240, kWindowHeight = 720;
-
-volatile std::sig_atomic_t received_signal = 0;
-
-bool is_terminated() { return received_signal != 0; }
-
-/// A window that never showed anything says why on the terminal too. Throws Error{bad_input}.
-void refuse_nothing_shown(const Workbench& workbench) {
-    if (!workbench.document() && !workbench.load_error().empty())
-        throw Error(ErrorKind::bad_input, {workbench.load_error(), "", ""});
-}
 
 int run_viewer(const ViewerOptions& options, double start) {
     std::vector<ScriptLine> lines;
@@ -51,27 +41,20 @@ int run_viewer(const ViewerOptions& options, double start) {
     Window window(size ? size->first + Interface::kPanelWidth : kWindowWidth,
                   size ? size->second + Interface::kLineHeight : kWindowHeight, "Relief");
     Interface interface(window, workbench, size);
-    // What was painted is kept then, too.
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        const auto end_at_rest = [](int received) {
-            received_signal = received;
-            std::signal(received, SIG_DFL); // a second one does not wait
-        };
-        if (std::signal(signal, end_at_rest) == SIG_IGN) std::signal(signal, SIG_IGN);
-    }
+    note_signals();
     const auto end = [&] {
-        refuse_nothing_shown(workbench);
-        return received_signal != 0 ? cli::kExitSignalBase + received_signal : cli::kExitDone;
+        workbench.refuse_nothing_open(); // said on the terminal too
+        return get_signal() != 0 ? cli::kExitSignalBase + get_signal() : cli::kExitDone;
     };
     if (options.script.empty()) {
-        interface.run(nullptr, start, is_terminated);
+        interface.run(nullptr, start);
         return end();
     }
     ScriptRunner script(std::move(lines), options.script.string(), workbench, interface.view(),
                         {[&](const InputEvent& event) { window.inject(event); },
                          [&](const std::filesystem::path& file) { window.take_screenshot(file); },
                          [](const std::string& line) { std::cout << line << std::endl; }});
-    interface.run(&script, start, is_terminated);
+    interface.run(&script, start);
     return end();
 }
 

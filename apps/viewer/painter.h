@@ -41,6 +41,8 @@ class Painter {
     std::vector<MapEdit> redo();
     /// Of maps that were replaced nothing can be taken back.
     void forget() { history_.clear(), frames_.clear(); }
+    /// Of the environment and lights that were replaced.
+    void forget_lighting() { history_.forget_lighting(); }
     /// Meshes were replaced, and values have followed their keys.
     void follow_frame() {
         frames_.clear();

@@ -11,6 +11,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "common/whole_names.h"
 #include "relief/convert.h"
 #include "viewer/conventions.h"
 #include "viewer/panels.h"
@@ -97,7 +98,7 @@ void draw_doubts(const Workbench& workbench) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.75f, 0.3f, 1.0f));
     for (const std::string& doubt : workbench.document()->doubts()) ImGui::TextWrapped("%s", doubt.c_str());
     for (const std::string& warning : workbench.render_state().statistics->warnings)
-        ImGui::TextWrapped("%s", name_panels(warning).c_str());
+        ImGui::TextWrapped("%s", cli::name_map_keys(warning).c_str());
     ImGui::PopStyleColor();
 }
 
@@ -146,8 +147,6 @@ void draw_file_panel(Workbench& workbench, PanelState& state) {
     ImGui::InputTextWithHint("##picture", workbench.suggest_file(".exr").filename().string().c_str(),
                              &state.picture_file);
     ImGui::SameLine();
-    workbench.set_output(state.picture_file, {{"relief:display", state.display},
-                                              {"relief:exposure", fmt::format("{:g}", state.view.exposure)}});
     if (ImGui::Button("write (F12)")) workbench.write_picture();
 }
 

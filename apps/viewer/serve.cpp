@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <csignal>
 #include <cstdint>
 #include <exception>
 #include <iostream>
@@ -18,8 +17,8 @@
 #include <stb_image_write.h>
 
 #include "common/exit_codes.h"
-#include "relief/error.h"
 #include "viewer/browser_server.h"
+#include "viewer/signals.h"
 #include "viewer/workbench.h"
 
 namespace relief::viewer {
@@ -30,8 +29,6 @@ namespace {
 constexpr int kMovingQuality = 75, kStillQuality = 92;
 /// Seconds of waiting where nothing happens, and where something moves.
 constexpr double kServeIdle = 0.1, kServeMoving = 0.01;
-
-volatile std::sig_atomic_t received_signal = 0;
 
 /// Lets the loop sleep until another thread has something for it.
 class Bell {
@@ -95,8 +92,7 @@ DisplayTable make_display() {
 
 int serve(const ViewerOptions& options) {
     Bell bell;
-    std::signal(SIGINT, [](int signal) { received_signal = signal; });
-    std::signal(SIGTERM, [](int signal) { received_signal = signal; });
+    note_signals();
     Workbench workbench(options.settings, options.given, [&] { bell.ring(); });
     const ImageSettings& image = workbench.settings().image;
     workbench.set_area({0, 0, float(image.width), float(image.height)});
@@ -107,11 +103,10 @@ int serve(const ViewerOptions& options) {
     std::shared_ptr<const ShownPicture> shown;
     std::string text;
     const auto start = std::chrono::steady_clock::now();
-    while (received_signal == 0) {
+    while (get_signal() == 0) {
         for (const InputEvent& event : server.take_events()) workbench.handle(place_event(event, image));
         workbench.update(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        if (!workbench.document() && !workbench.load_error().empty())
-            throw Error(ErrorKind::bad_input, {workbench.load_error(), "", ""});
+        workbench.refuse_nothing_open();
         if (const std::shared_ptr<const ShownPicture> picture = workbench.picture()) {
             const std::string state = describe_state(workbench, *picture);
             if (picture != shown || state != text)
@@ -122,7 +117,7 @@ int serve(const ViewerOptions& options) {
         }
         bell.wait(workbench.is_moving() ? kServeMoving : kServeIdle);
     }
-    return cli::kExitSignalBase + received_signal;
+    return cli::kExitSignalBase + get_signal();
 }
 
 } // namespace relief::viewer

@@ -1,7 +1,6 @@
 #include "viewer/shot_reader.h"
 
 #include <memory>
-#include <system_error>
 #include <utility>
 
 namespace relief::viewer {
@@ -24,17 +23,16 @@ SharedMeshes take_meshes(std::vector<Mesh> meshes, const SharedMeshes& before) {
 
 /// Of those that a frame reads, before it does.
 void ShotReader::drop_rewritten_files(int frame) {
-    std::map<std::filesystem::path, std::filesystem::file_time_type> now;
+    std::map<std::filesystem::path, FileStamp> now;
     bool has_changed = false;
     for (const std::filesystem::path& file : shot_.list_files(frame)) {
         if (file == file_) continue; // whoever watches it says what becomes of changes
-        std::error_code code;
-        now[file] = std::filesystem::last_write_time(file, code);
-        const auto known = times_.find(file);
-        has_changed |= known != times_.end() && known->second != now[file];
+        now[file] = read_stamp(file);
+        const auto known = stamps_.find(file);
+        has_changed |= known != stamps_.end() && known->second != now[file];
     }
-    if (has_changed) shot_ = Shot(file_, reader_), times_.clear();
-    times_.merge(now);
+    if (has_changed) shot_ = Shot(file_, reader_), stamps_.clear();
+    stamps_.merge(now);
 }
 
 ShotFrame ShotReader::read(int frame, uint64_t known) {

@@ -9,6 +9,7 @@
 
 #include "relief/io.h"
 #include "relief/shot.h"
+#include "viewer/file_watch.h"
 #include "viewer/shared_scene.h"
 
 namespace relief::viewer {
@@ -42,7 +43,7 @@ class ShotReader {
     std::filesystem::path file_;
     MeshReaderSettings reader_;
     Shot shot_;
-    std::map<std::filesystem::path, std::filesystem::file_time_type> times_; ///< of files as they were read
+    std::map<std::filesystem::path, FileStamp> stamps_; ///< of files as they were read
     SharedScene last_;
     uint64_t content_ = 0;
 };

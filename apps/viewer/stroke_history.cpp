@@ -60,6 +60,15 @@ void StrokeHistory::note_value(const SceneValue& before, bool is_new) {
     if (is_new || !is_same) done_.emplace_back(before);
 }
 
+void StrokeHistory::forget_lighting() {
+    const auto is_lighting = [](const Step& step) {
+        const auto* const value = std::get_if<SceneValue>(&step);
+        return value && (std::holds_alternative<Environment>(value->value) ||
+                         std::holds_alternative<Light>(value->value));
+    };
+    std::erase_if(done_, is_lighting), std::erase_if(undone_, is_lighting);
+}
+
 bool StrokeHistory::has_strokes() const {
     const auto is_stroke = [](const Step& step) { return std::holds_alternative<Stroke>(step); };
     return std::ranges::any_of(done_, is_stroke) || std::ranges::any_of(undone_, is_stroke);

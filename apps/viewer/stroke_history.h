@@ -65,6 +65,8 @@ class StrokeHistory {
     bool can_undo() const { return !done_.empty() && !open_; }
     bool can_redo() const { return !undone_.empty() && !open_; }
     void clear();
+    /// Forgets how the environment and lights were.
+    void forget_lighting();
 
     /// What the last stroke changed: calls `change(place, box)` for each block that was put back, and keeps
     /// what `find(place)` holds there for redo. Of a step that is no stroke, `set_value(before)` puts

@@ -52,6 +52,8 @@ class Workbench {
     bool is_loading() const { return loading_.valid(); }
     /// Why the file that was opened last could not be read; empty: it was.
     const std::string& load_error() const { return load_error_; }
+    /// Throws Error{bad_input} with load_error() where nothing else is open.
+    void refuse_nothing_open() const;
     /// Dropped files: a scene or mesh is opened, with the map and the HDR that come with it; a map alone goes
     /// onto the mesh that is open, an HDR becomes the environment.
     void drop(const std::vector<std::filesystem::path>& files);
@@ -59,11 +61,7 @@ class Workbench {
     void ask_to_open(const std::vector<std::filesystem::path>& files);
     bool is_asked_to_open() const { return !asked_files_.empty(); }
     /// What is not saved may go, once another scene has come.
-    void open_asked() {
-        discards_ = true;
-        drop(std::exchange(asked_files_, {}));
-        discards_ = false;
-    }
+    void open_asked() { open_files(std::exchange(asked_files_, {}), true); }
     void forget_asked() { asked_files_.clear(); }
     bool save(const std::filesystem::path& file);
     /// What is not saved is not kept at the end, either.
@@ -96,8 +94,6 @@ class Workbench {
     void set_wants_to_end(bool wants_to_end) { wants_to_end_ = wants_to_end; }
     /// Something was changed or painted, at any frame, since the scene was saved.
     bool has_unsaved() const;
-    /// The map of the mesh was dropped onto it: so far in no file.
-    bool has_dropped_map() const { return has_dropped_map_; }
     bool is_help_shown() const { return is_help_shown_; }
     void show_help(bool is_shown) { is_help_shown_ = is_shown; }
     /// Something moves by itself: update() is to be called soon again.
@@ -213,7 +209,8 @@ class Workbench {
     void frame(const std::optional<uint32_t>& object);
     void forget_explanation();
     bool has_edits() const; ///< has_unsaved(), beside the map that was dropped
-    void drop_alone(const std::filesystem::path& file);
+    void open_files(const std::vector<std::filesystem::path>& files, bool discards);
+    void open_alone(const std::filesystem::path& file, bool discards);
     void load(Load load);
     /// The same file again, by the same camera.
     void read_again() { load({document_->input(), true, has_dropped_map_}); }
@@ -279,7 +276,7 @@ class Workbench {
     uint64_t frame_version_ = 0;      ///< of the first request of the frame that is shown
     Camera scene_camera_;
     bool has_own_camera_ = false; ///< somebody moved it
-    bool has_dropped_map_ = false, discards_ = false, is_discarded_ = false;
+    bool has_dropped_map_ = false, is_discarded_ = false;
 
     std::shared_ptr<const SharedScene> snapshot_;
     uint64_t snapshot_version_ = 0;

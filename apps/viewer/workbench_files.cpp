@@ -9,6 +9,7 @@
 #include "common/inputs.h"
 #include "common/mesh_reader.h"
 #include "common/values.h"
+#include "common/whole_names.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/shot.h"
@@ -44,14 +45,14 @@ bool is_file_of(const Scene& scene, size_t displacement, int udim, const std::st
 
 bool is_environment(const std::filesystem::path& file) { return cli::get_lower_extension(file) == ".hdr"; }
 
-bool is_map(const std::filesystem::path& file) { return cli::get_kind(file) == cli::FileKind::map; }
+bool is_picture(const std::filesystem::path& file) { return cli::get_kind(file) == cli::FileKind::map; }
 
 /// Maps and environments that come with a mesh, or onto it.
 SceneInput add_files(SceneInput input, const std::vector<std::filesystem::path>& files) {
     for (const std::filesystem::path& file : files)
         if (is_environment(file))
             input.mesh.environment = file;
-        else if (is_map(file))
+        else if (is_picture(file))
             input.mesh.displacement_map = name_pattern(file);
     return input;
 }
@@ -62,7 +63,6 @@ void Workbench::open(const SceneInput& input) { load({input}); }
 
 void Workbench::load(Load load) {
     if (load.input.mesh.reader.program.empty()) load.input.mesh.reader = cli::make_mesh_reader();
-    load.discards |= discards_;
     if (loading_.valid()) // to assign to it would wait
         next_load_ = std::move(load);
     else
@@ -117,7 +117,7 @@ void Workbench::adopt(Loaded loaded) {
     if (!given_.spp) image.spp = picture.spp.value_or(ImageSettings().spp);
     if (!given_.bounces) image.bounces = picture.bounces.value_or(ImageSettings().bounces);
     if (!given_.seed) image.seed = picture.seed.value_or(0);
-    if (!scene.warnings.empty()) message_ = name_panels(scene.warnings.front());
+    if (!scene.warnings.empty()) message_ = cli::name_map_keys(scene.warnings.front());
     if (!document_->doubts().empty()) message_ = document_->doubts().front();
     if (const auto painted = state_.claim_painted(loaded.of.input.file); !painted.empty())
         message_ = fmt::format("painted before and not saved: {}", painted.front().string());
@@ -127,6 +127,10 @@ void Workbench::adopt(Loaded loaded) {
     needs_snapshot_ = true;
     watch_files();
     set_motion(Motion::still);
+}
+
+void Workbench::refuse_nothing_open() const {
+    if (!document_ && !load_error_.empty()) throw Error(ErrorKind::bad_input, {load_error_, "", ""});
 }
 
 void Workbench::watch_files() {
@@ -140,35 +144,40 @@ void Workbench::watch_files() {
 void Workbench::ask_to_open(const std::vector<std::filesystem::path>& files) {
     const bool is_change = std::ranges::all_of(files, is_environment); // of the scene that is open
     // Nothing is lost with a map that only takes the place of another one.
-    const bool is_other_map = has_dropped_map_ && !has_edits() && std::ranges::all_of(files, is_map);
+    const bool is_other_map = has_dropped_map_ && !has_edits() && std::ranges::all_of(files, is_picture);
     if (is_change || is_other_map || !has_unsaved()) return drop(files);
     asked_files_ = files;
     has_news_ = true;
 }
 
-void Workbench::drop(const std::vector<std::filesystem::path>& files) {
+void Workbench::drop(const std::vector<std::filesystem::path>& files) { open_files(files, false); }
+
+void Workbench::open_files(const std::vector<std::filesystem::path>& files, bool discards) {
     const auto mesh = std::ranges::find_if(files, is_mesh_file);
     if (mesh == files.end()) {
         const bool is_light = std::ranges::all_of(files, is_environment);
         const bool is_for_mesh = document_ && is_mesh_file(document_->input().file) && !is_light;
-        if (is_for_mesh && std::ranges::all_of(files, is_map))
-            return load({add_files(document_->input(), files), true, true});
-        for (const std::filesystem::path& file : files) drop_alone(file);
+        if (is_for_mesh && std::ranges::all_of(files, is_picture))
+            return load({add_files(document_->input(), files), true, true, discards});
+        for (const std::filesystem::path& file : files) open_alone(file, discards);
         return;
     }
-    open(add_files({*mesh, {}, {}}, files));
+    load({add_files({*mesh, {}, {}}, files), false, false, discards});
 }
 
-void Workbench::drop_alone(const std::filesystem::path& file) {
+void Workbench::open_alone(const std::filesystem::path& file, bool discards) {
     const cli::FileKind kind = cli::get_kind(file);
-    if (kind != cli::FileKind::map) return open({file, {}, {}});
+    if (kind != cli::FileKind::map) return load({{file, {}, {}}, false, false, discards});
     if (!document_) {
         message_ = "drop a mesh first, then its map";
         has_news_ = true;
         return;
     }
     if (is_environment(file)) {
-        change_document([&](Document& document) { document.load_environment(file); });
+        change_document([&](Document& document) {
+            document.load_environment(file);
+            if (is_mesh_file(document.input().file)) painter_->forget_lighting(); // all of it is another
+        });
         watch_files();
         return;
     }

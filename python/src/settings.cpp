@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "common/whole_names.h"
 #include "relief/error.h"
 #include "values.h"
 
@@ -147,7 +148,6 @@ constexpr Keyword kKeywords[] = {
 constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
     {"image.width", "size"},
     {"image.height", "size"},
-    {"displacement.", ""},
     {"vulkan_devices()", "relief.devices()"},
     {"available_isas()", "relief.isas()"}};
 
@@ -170,19 +170,9 @@ void read_keywords(const nb::dict& keywords, bool is_of_rays, RenderSettings& se
     }
 }
 
-bool is_part_of_name(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '/' || c == '.';
-}
-
 void replace_name(std::string_view name, std::string_view by, std::string& text) {
-    for (size_t at = 0; (at = text.find(name, at)) != std::string::npos;) {
-        const size_t end = at + name.size();
-        const bool is_whole = (at == 0 || !is_part_of_name(text[at - 1])) &&
-                              (name.ends_with('.') || end == text.size() || !is_part_of_name(text[end]));
-        if (is_whole) text.replace(at, name.size(), by);
-        at = is_whole ? at + by.size() : end;
-    }
+    for (size_t at = 0; (at = cli::find_whole_name(text, name, at)) != std::string::npos; at += by.size())
+        text.replace(at, name.size(), by);
 }
 
 } // namespace
@@ -215,7 +205,7 @@ IntersectorSettings read_ray_settings(const nb::dict& keywords) {
 std::string name_keywords(std::string text) {
     for (const Keyword& keyword : kKeywords) replace_name(keyword.setting, keyword.name, text);
     for (const auto& [name, by] : kOtherNames) replace_name(name, by, text);
-    return text;
+    return cli::name_map_keys(std::move(text));
 }
 
 } // namespace relief::python

@@ -98,6 +98,11 @@ class RenderTest(unittest.TestCase):
         with self.assertRaises(TypeError):
             relief.render(self.scene, progress=3)
 
+    def test_files_keep_names_like_those_of_settings(self):
+        with self.assertRaises(relief.Error) as raised:
+            relief.Picture.load("displacement.exr")
+        self.assertIn("displacement.exr", raised.exception.where)
+
     def test_files_of_a_picture(self):
         picture = relief.render(self.scene, background="transparent", layers="depth")
         with tempfile.TemporaryDirectory() as folder:

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "command.h"
+#include "common/whole_names.h"
 #include "render_warnings.h"
 
 namespace relief::cli {
@@ -29,6 +30,14 @@ TEST(OptionNames, are_keys_of_a_scene_file_for_what_stands_there) {
     const std::string text = "write displacement.wrap = repeat; surface.cache_bytes sets its cap";
     EXPECT_EQ(name_setting(text, true), "write --wrap repeat; --bottom-cache sets its cap");
     EXPECT_EQ(name_setting(text, false), "write \"wrap\": \"repeat\"; --bottom-cache sets its cap");
+}
+
+TEST(OptionNames, are_keys_alone_where_one_displacement_is_seen) {
+    EXPECT_EQ(name_map_keys("write displacement.axes = t,n,b (or displacement.scale)"),
+              "write axes = t,n,b (or scale)");
+    for (const char* text : {"displacement 'displacement.1001' of displacement.exr", "my-displacement.axes",
+                             "displacement.axes.exr", "maps/displacement.axes"})
+        EXPECT_EQ(name_map_keys(text), text);
 }
 
 class OptionNamesOfCommand : public CommandTest {};

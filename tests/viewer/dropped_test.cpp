@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "relief/io.h"
-#include "viewer/conventions.h"
 #include "viewer/workbench_fixture.h"
 
 namespace relief::viewer {
@@ -91,13 +90,16 @@ TEST_F(DroppedTest, an_environment_that_cannot_be_read_changes_nothing) {
     EXPECT_EQ(bench_->document()->scene().lights.at(0).strength, 3);
 }
 
-TEST_F(DroppedTest, a_light_that_an_environment_replaced_is_not_changed_back) {
+TEST_F(DroppedTest, what_an_environment_replaced_is_not_taken_back) {
+    bench_->change_material(0, [](Material& material) { material.roughness = 0.125f; });
     bench_->change_light(0, [](Light& light) { light.strength = 3; });
+    bench_->change_environment([](Environment& sky) { sky.strength = 5; });
     bench_->drop({write_sky()});
-    ASSERT_TRUE(bench_->can_undo());
+    const float strength = bench_->document()->scene().environment->strength;
     bench_->undo();
-    ASSERT_TRUE(reach_done()) << bench_->message();
-    EXPECT_TRUE(bench_->document()->scene().lights.empty());
+    EXPECT_EQ(bench_->document()->scene().environment->strength, strength);
+    EXPECT_NE(bench_->document()->scene().materials[0].roughness, 0.125f);
+    EXPECT_FALSE(bench_->can_undo());
 }
 
 TEST_F(DroppedTest, a_scene_takes_the_place_of_no_file_of_another_kind) {
@@ -121,13 +123,6 @@ TEST_F(DroppedTest, a_picture_has_the_name_and_the_look_that_were_chosen) {
     const Texture dark = read_texture(folder_ / "dark.png"), bright = read_texture(folder_ / "bright.png");
     const size_t middle = 4 * (size_t(dark.height / 2) * dark.width + dark.width / 2);
     EXPECT_GT(bright.floats.at(middle), 2 * dark.floats.at(middle));
-}
-
-TEST(Panels, say_warnings_in_their_own_words) {
-    EXPECT_EQ(name_panels("write displacement.axes = t,n,b or displacement.scale"),
-              "write axes = t,n,b or scale");
-    EXPECT_EQ(name_panels("displacement 'displacement.1001' of displacement.exr"),
-              "displacement 'displacement.1001' of displacement.exr");
 }
 
 } // namespace relief::viewer

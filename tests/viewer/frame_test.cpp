@@ -408,6 +408,30 @@ TEST_F(FrameTest, a_frame_that_is_being_read_is_not_shown_when_the_one_before_is
     EXPECT_EQ(bench_->frame(), 1);
 }
 
+TEST_F(FrameTest, strokes_on_a_map_that_was_read_again_from_the_same_file_have_not_left) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    paint(0.25f);
+    const std::filesystem::path mesh = folder_ / "meshes" / "plane.obj";
+    std::filesystem::last_write_time(mesh, std::filesystem::last_write_time(mesh) + std::chrono::hours(1));
+    show(3);
+    EXPECT_EQ(read_height(), 0.25f);
+    EXPECT_TRUE(bench_->document()->has_painted());
+    for (const std::string& message : bench_->messages())
+        EXPECT_EQ(message.find("comes back"), std::string::npos) << message;
+}
+
+TEST_F(FrameTest, frames_are_those_of_the_scene_that_was_opened) {
+    open_animated("\"scale\"", R"({"keys": [[1, 1], [5, 2]]})");
+    bench_->change_material(0, [](Material& material) { material.roughness = 0.125f; });
+    std::string text = read_text(folder_ / "shot.json");
+    const std::string keys = "[[1, 1], [5, 2]]";
+    ASSERT_NE(text.find(keys), std::string::npos);
+    std::ofstream(folder_ / "shot.json") << text.replace(text.find(keys), keys.size(), "[[1, 7], [5, 7]]");
+    show(3);
+    EXPECT_EQ(map().scale.x, 1.5f);
+    EXPECT_EQ(bench_->document()->scene().materials[0].roughness, 0.125f);
+}
+
 TEST_F(FrameTest, a_map_that_was_rewritten_while_its_frame_was_left_is_read_again) {
     open_sequence();
     show(2);
