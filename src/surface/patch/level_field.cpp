@@ -22,16 +22,16 @@ template <size_t N>
 LineMeasure measure_line(const std::array<Vec3f, N>& line, double cells, const Affine& world_from_object) {
     LineMeasure measure;
     measure.cap = std::clamp(int(std::ceil(std::log2(std::max(cells, 1.0)))), 0, kMaxLevel);
-    std::array<Vec3f, N> points;
-    for (size_t k = 0; k < N; ++k) points[k] = transform_point(world_from_object, line[k]);
-    std::array<float, N> steps{}, spokes;
-    for (size_t k = 1; k < N; ++k) steps[k] = length(points[k] - points[k - 1]);
     Box box;
-    for (const Vec3f& point : points) box.extend(point);
+    std::array<Vec3f, N> points;
+    for (size_t k = 0; k < N; ++k) {
+        points[k] = transform_point(world_from_object, line[k]);
+        box.extend(points[k]);
+        if (k > 0) measure.length += length(points[k] - points[k - 1]);
+    }
     measure.center = box.center();
-    for (size_t k = 0; k < N; ++k) spokes[k] = length(points[k] - measure.center);
-    for (const float step : steps) measure.length += step;
-    for (const float spoke : spokes) measure.radius = std::max(measure.radius, double(spoke));
+    for (const Vec3f& point : points)
+        measure.radius = std::max(measure.radius, double(length(point - measure.center)));
     return measure;
 }
 

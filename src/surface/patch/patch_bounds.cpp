@@ -222,9 +222,7 @@ void extend_by_part(std::array<Interval, 3>& bounds, const PatchBase& base,
         return blend_line(blend_line(corners[0], corners[1], u, is_tangent),
                           blend_line(corners[3], corners[2], u, is_tangent), v, is_tangent);
     };
-    const bool is_all = u0_v0_u1_v1 == std::array<double, 4>{0, 0, 1, 1};
-    const std::array<CornerFrame, 4> part =
-        is_all ? corners : std::array{blend(u0, v0), blend(u1, v0), blend(u1, v1), blend(u0, v1)};
+    const std::array<CornerFrame, 4> part = {blend(u0, v0), blend(u1, v0), blend(u1, v1), blend(u0, v1)};
     if (!base.bicubic) return extend_by_hull(bounds, base.footprint, nullptr, part);
     const CoordinateRanges ranges = bound_part(*base.bicubic, u0_v0_u1_v1);
     extend_by_hull(bounds, base.footprint, &ranges, part);
