@@ -1,5 +1,6 @@
 #include "bench/child_process.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -10,7 +11,9 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,6 +26,8 @@ namespace relief::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr size_t kEndLines = 8; ///< of the output of a program that failed
 
 [[noreturn]] void throw_system_error(const std::string& what, const std::string& program, int code) {
     throw Error(ErrorKind::failed, {what + ": " + std::strerror(code), program, ""});
@@ -52,17 +57,37 @@ class Pipe {
     int ends_[2] = {-1, -1};
 };
 
-pid_t start_child(const std::vector<std::string>& words, int output) {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
+/// As posix_spawn takes them; valid as long as the strings are.
+std::vector<char*> list_pointers(const std::vector<std::string>& strings) {
+    std::vector<char*> pointers;
+    for (const std::string& string : strings) pointers.push_back(const_cast<char*>(string.c_str()));
+    pointers.push_back(nullptr);
+    return pointers;
+}
+
+/// This process's environment with `variables` in it.
+std::vector<std::string> make_environment(const std::vector<std::string>& variables) {
+    std::vector<std::string> all = variables;
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string_view text = *entry;
+        const std::string_view name = text.substr(0, text.find('=') + 1);
+        if (std::ranges::none_of(variables, [&](const std::string& v) { return v.starts_with(name); }))
+            all.emplace_back(text);
+    }
+    return all;
+}
+
+pid_t start_child(const std::vector<std::string>& words, const std::vector<std::string>& variables,
+                  int output) {
+    const std::vector<std::string> environment = make_environment(variables);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO);
     pid_t child = 0;
-    const int code = posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
+    const int code = posix_spawn(&child, words[0].c_str(), &actions, nullptr, list_pointers(words).data(),
+                                 list_pointers(environment).data());
     posix_spawn_file_actions_destroy(&actions);
     if (code != 0) throw_system_error("the program cannot be started", words[0], code);
     return child;
@@ -89,11 +114,15 @@ std::vector<LogLine> read_lines(int input, Clock::time_point start) {
     return lines;
 }
 
-int wait_for(pid_t child) {
+double get_seconds(const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); }
+
+void wait_for(pid_t child, ChildResult& result) {
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    rusage usage{};
+    while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
     }
-    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    result.processor_s = get_seconds(usage.ru_utime) + get_seconds(usage.ru_stime);
 }
 
 } // namespace
@@ -109,15 +138,29 @@ std::optional<std::filesystem::path> find_program(const std::string& name) {
     return {};
 }
 
-ChildResult run_child(const std::vector<std::string>& words) {
+ChildResult run_child(const std::vector<std::string>& words, const std::vector<std::string>& variables) {
     Pipe pipe(words.at(0));
     const Clock::time_point start = Clock::now();
-    const pid_t child = start_child(words, pipe.writer());
+    const pid_t child = start_child(words, variables, pipe.writer());
     pipe.close_writer();
     ChildResult result;
     result.lines = read_lines(pipe.reader(), start);
-    result.exit_code = wait_for(child);
+    wait_for(child, result);
     return result;
+}
+
+ChildResult run_checked(const std::vector<std::string>& words, const std::vector<std::string>& variables) {
+    ChildResult child = run_child(words, variables);
+    if (child.exit_code == 0) return child;
+    std::string end;
+    for (size_t k = child.lines.size() - std::min(child.lines.size(), kEndLines); k < child.lines.size(); ++k)
+        end += "\n" + child.lines[k].text;
+    throw Error(ErrorKind::failed, {fmt::format("ended with exit code {}:{}", child.exit_code, end),
+                                    describe_command(words), ""});
+}
+
+std::string describe_command(const std::vector<std::string>& words) {
+    return fmt::format("{}", fmt::join(words, " "));
 }
 
 } // namespace relief::bench

@@ -37,15 +37,9 @@ std::vector<std::string> find_blender() {
                  "pip install bpy"});
 }
 
-ChildResult run_checked(std::vector<std::string> words, const Arguments& arguments) {
+ChildResult run_with(std::vector<std::string> words, const Arguments& arguments) {
     for (const auto& [option, value] : arguments) words.insert(words.end(), {option, value});
-    ChildResult child = run_child(words);
-    if (child.exit_code == 0) return child;
-    std::string end;
-    for (size_t k = child.lines.size() - std::min<size_t>(child.lines.size(), 8); k < child.lines.size(); ++k)
-        end += "\n" + child.lines[k].text;
-    throw Error(ErrorKind::failed,
-                {fmt::format("ended with exit code {}:{}", child.exit_code, end), words[0], ""});
+    return run_checked(words);
 }
 
 } // namespace
@@ -83,7 +77,7 @@ Measures Renderers::render_with_cycles(const std::filesystem::path& scene, const
                            {"--importance-map", std::to_string(task.importance_map)}};
     if (!task.picture.empty())
         arguments.emplace_back("--output", std::filesystem::absolute(task.picture).string());
-    const CyclesTimes times = read_cycles_log(run_checked(blender_, arguments).lines);
+    const CyclesTimes times = read_cycles_log(run_with(blender_, arguments).lines);
     blender_version_ = times.version;
     return {{"images_s", times.images_s},
             {"prepare_s", times.synchronisation_s - times.images_s},
@@ -100,13 +94,13 @@ Measures Renderers::render_with_relief(const std::filesystem::path& scene, const
     std::vector<std::string> words = {relief_.string(), "render",     scene.string(), "-q",
                                       "--background",   "transparent"};
     if (task.is_denoised) words.push_back("--denoise");
-    run_checked(std::move(words), {{"-o", picture.string()},
-                                   {"--stats", statistics.string()},
-                                   {"--size", size_},
-                                   {"--spp", std::to_string(task.samples)},
-                                   {"--bounces", std::to_string(task.bounces)},
-                                   {"--seed", std::to_string(task.seed)},
-                                   {"--threads", threads_}});
+    run_with(std::move(words), {{"-o", picture.string()},
+                                {"--stats", statistics.string()},
+                                {"--size", size_},
+                                {"--spp", std::to_string(task.samples)},
+                                {"--bounces", std::to_string(task.bounces)},
+                                {"--seed", std::to_string(task.seed)},
+                                {"--threads", threads_}});
     std::ifstream stream(statistics);
     const Value s = read_json({std::istreambuf_iterator<char>(stream), {}});
     const Value& time = s["time_s"];
