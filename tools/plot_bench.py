@@ -21,6 +21,7 @@ FRAME_STAGES = {"top_traversal": "top and middle cast", "sort": "sort", "bottom_
                 "bottom_traversal": "bottom cast", "shade": "shading", "film": "film"}
 CAST_STAGES = dict(list(FRAME_STAGES.items())[:4])
 SECONDS = [(1, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")]
+RATES = [(1e9, "G/s"), (1e6, "M/s"), (1e3, "k/s"), (1, "/s")]
 BYTES = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "KB"), (1, "B")]  # decimal, as the papers count
 
 
@@ -295,6 +296,42 @@ def chart_cycles(r):
                        for case in scene["cases"]]}
 
 
+def chart_frame(r):
+    s = r["settings"]
+    programs = ["baseline", "relief"] if "baseline" in r else ["relief"]
+    where = (f"{s['engine']}, {s['width']} x {s['height']} pixels, {s['samples']} samples, {s['bounces']} bounces, "
+             f"{s['threads']} threads, {r['machine']['processor']}; medians of {s['runs']} runs; commit {r['build']['commit']}")
+
+    def name(case, program):
+        return f"{case['isa']} {program}" if case["isa"] else program
+
+    def speed_bar(case, program):
+        speed = case[program]["samples_per_s"]
+        if speed is None:
+            return make_bar(name(case, program), [], note="not told")
+        return make_bar(name(case, program), [0] * programs.index(program) + [speed["median"]], speed)
+
+    def panels(make):
+        scenes = list(dict.fromkeys(case["scene"] for case in r["cases"]))
+        return [make_panel(scene, [make(case, program) for case in r["cases"] if case["scene"] == scene for program in programs])
+                for scene in scenes]
+
+    stages = list(dict.fromkeys(stage for case in r["cases"] for program in programs for stage in case[program]["stages"]))
+
+    def stage_bar(case, program):
+        told = case[program]["stages"]
+        if not told:
+            return make_bar(name(case, program), [], note="not told")
+        return make_bar(name(case, program), [told[stage]["seconds"]["median"] if stage in told else 0 for stage in stages])
+
+    yield "frame_speed", {"title": "Path-traced frames: samples a second", "axis": "samples a second, lowest and highest run",
+                          "units": RATES, "series": programs, "panels": panels(speed_bar),
+                          "notes": [where, "Every panel has an axis of its own."]}
+    yield "frame_stages", {"title": "Path-traced frames: stages", "axis": "seconds, summed over threads of the CPU engine",
+                           "series": [FRAME_STAGES.get(stage, stage) for stage in stages], "panels": panels(stage_bar),
+                           "notes": [where, "Every panel has an axis of its own."]}
+
+
 def draw_lines(chart, file):
     """Error against time, both logarithmic; a line a series."""
     figure = pyplot.figure(figsize=(8, 6))
@@ -330,7 +367,7 @@ def chart_quality(r):
 
 
 CHARTS = {"paper1": chart_paper1, "paper2": chart_paper2, "paper3": chart_paper3, "peers": chart_peers, "cycles": chart_cycles,
-          "quality": chart_quality, "edits": lambda _: [], "triangles": lambda _: []}  # tables say it all
+          "quality": chart_quality, "frame": chart_frame, "edits": lambda _: [], "triangles": lambda _: []}  # tables say it all
 
 
 def read_result(file):

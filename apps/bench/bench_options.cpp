@@ -23,7 +23,8 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
     add("--scenes", "LIST",
         "paper1: of party,bark,barks,pumpkin; paper2: of body,hall,knot; paper3: these and pumpkin,bark; "
         "peers: of party,rock,rock_mild,rocks,rocks_mild,rock_close,rock_close_mild,pumpkin,bark; "
-        "cycles: of rock,rocks,rock_close,pumpkin,ear; default: all, of cycles rock,rocks,pumpkin",
+        "cycles: of rock,rocks,rock_close,pumpkin,ear; frame: sample scenes; default: all, of cycles "
+        "rock,rocks,pumpkin, of frame pumpkin,bark,party",
         [&o](const std::string& text) {
             o.scenes = split(text, ',');
             if (o.scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
@@ -32,6 +33,9 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
         ->type_name("FILE");
     verb.add_option("--scene", o.scene_files, "peers: measure this scene; may be repeated")
         ->type_name("FILE");
+    verb.add_option("--baseline", o.baseline,
+                    "frame: the command `relief` of another build, which takes turns with this one")
+        ->type_name("PROGRAM");
     add("--tessellated-limit", "MB",
         "leave out pre-tessellated scenes above; default 4096 for paper1, 2048 for peers",
         [&o](const std::string& text) {
@@ -47,9 +51,12 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
     add("--size", "WxH",
-        "pixels; default 1280x720 for paper1, peers, cycles and edits, 320x180 for paper2, 640x360 for "
+        "pixels; default 1280x720 for paper1, peers, cycles, edits and frame, 320x180 for paper2, 640x360 "
+        "for "
         "paper3",
         [&o](const std::string& text) { o.size = parse_size("--size", text, kMaxPictureSize); });
+    add("--spp", "N", "frame: samples a pixel; default 16",
+        [&o](const std::string& text) { o.spp = int(parse_integer("--spp", text, 1, kMaxSamples)); });
     add("--level", "auto|N", "paper1: from the size on screen (default), or 2^N cells a side",
         [&o](const std::string& text) { o.level = parse_level(text); });
     add("--levels", "LIST", "peers: levels to measure, of auto and 0 to 12; default 3,4,5,6,auto",
@@ -76,7 +83,9 @@ std::vector<std::string_view> list_given(const BenchOptions& o) {
         {"--scenes", !o.scenes.empty()},
         {"--mesh", !o.meshes.empty()},
         {"--scene", !o.scene_files.empty()},
+        {"--baseline", !o.baseline.empty()},
         {"--size", o.size.has_value()},
+        {"--spp", o.spp.has_value()},
         {"--level", o.level.has_value()},
         {"--levels", !o.levels.empty()},
         {"--tessellated-limit", o.tessellated_limit_bytes.has_value()},

@@ -24,7 +24,8 @@ struct BenchOptions {
     std::optional<std::pair<int, int>> size;
     std::vector<std::string> scenes; ///< none: all of the suite
     std::vector<std::string> meshes, scene_files;
-    std::optional<int> runs;
+    std::optional<int> runs, spp;
+    std::filesystem::path baseline; ///< another build of the command; empty: none
     std::optional<uint64_t> tessellated_limit_bytes;
     std::optional<int> level;
     std::vector<int> levels; ///< none: all of the suite

@@ -1,5 +1,6 @@
 #include "bench/machine.h"
 
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -37,6 +38,12 @@ Value describe_machine() {
     return {{"system", read_system()},
             {"processor", read_processor()},
             {"threads", std::thread::hardware_concurrency()}};
+}
+
+Value describe_load() {
+    double means[3];
+    if (getloadavg(means, 3) != 3) return {};
+    return {{"one_minute", means[0]}, {"five_minutes", means[1]}, {"fifteen_minutes", means[2]}};
 }
 
 Value describe_vulkan_devices() {

@@ -15,6 +15,10 @@ Value describe_build();
 /// {system, processor, threads} of this machine.
 Value describe_machine();
 
+/// Programs that ran or waited to run, as means over the last {one_minute, five_minutes, fifteen_minutes};
+/// null if unknown.
+Value describe_load();
+
 /// A list of {device, name, driver, kind, memory_bytes, missing}: what the Vulkan engine could run on.
 Value describe_vulkan_devices();
 

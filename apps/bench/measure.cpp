@@ -48,6 +48,14 @@ double get_median(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
+/// `share` of the way through the sorted values, between neighbours linearly.
+double get_quantile(const std::vector<double>& sorted, double share) {
+    const double place = share * double(sorted.size() - 1);
+    const size_t below = size_t(place);
+    const size_t above = std::min(below + 1, sorted.size() - 1);
+    return sorted[below] + (place - double(below)) * (sorted[above] - sorted[below]);
+}
+
 void render_variant(const Scene& scene, Variant& variant, const Report& report, int run) {
     if (!variant.refusal.empty()) return;
     report(
@@ -73,6 +81,16 @@ Value summarize(std::vector<double> values) {
     const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
     return {
         {"median", get_median(values)}, {"lowest", *lowest}, {"highest", *highest}, {"runs", values.size()}};
+}
+
+Value summarize_quartiles(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return {{"median", get_quantile(values, 0.5)},
+            {"lower_quartile", get_quantile(values, 0.25)},
+            {"upper_quartile", get_quantile(values, 0.75)},
+            {"lowest", values.front()},
+            {"highest", values.back()},
+            {"runs", values.size()}};
 }
 
 std::vector<std::vector<double>> time_in_turn(const std::vector<Measure>& measures, int runs) {

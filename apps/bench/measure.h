@@ -25,6 +25,10 @@ struct Variant {
 /// {median, lowest, highest, runs}; for an even count the mean of the middle two. `values` is not empty.
 Value summarize(std::vector<double> values);
 
+/// {median, lower_quartile, upper_quartile, lowest, highest, runs}; quartiles are interpolated linearly
+/// between the sorted values. `values` is not empty.
+Value summarize_quartiles(std::vector<double> values);
+
 /// Seconds of one run.
 using Measure = std::function<double()>;
 

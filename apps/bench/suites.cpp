@@ -11,6 +11,7 @@
 #include "base/suggest.h"
 #include "bench/cycles.h"
 #include "bench/edits.h"
+#include "bench/frame.h"
 #include "bench/paper1.h"
 #include "bench/paper2.h"
 #include "bench/paper3.h"
@@ -125,6 +126,23 @@ SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
     return run_suite(o, std::move(options), report, run_edits, make_edits_table);
 }
 
+/// Sample scenes, rendered by the command `relief` beside this program and by that of another build.
+SuiteResult run_frame_suite(const BenchOptions& o, const Report& report) {
+    FrameOptions options;
+    options.settings = make_settings(o, 1280, 720);
+    options.settings.image.spp = o.spp.value_or(16);
+    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
+    options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
+    options.baseline = o.baseline;
+    check_scenes(o, frame_scene_names());
+    if (!o.scenes.empty()) options.scenes = o.scenes;
+    if (options.settings.device.engine == EngineKind::vulkan) options.isas.clear();
+    if (!o.engine.cpu_only.empty()) options.isas = {std::string(cli::isa_name(o.settings.device.isa))};
+    SuiteResult outcome = run_suite(o, std::move(options), report, run_frame, make_frame_table);
+    outcome.files.push_back({"frame.md", make_frame_page(outcome.result)});
+    return outcome;
+}
+
 #ifdef RELIEF_EMBREE
 /// CPU engine, one thread; its own meshes are always measured.
 SuiteResult run_triangles_suite(const BenchOptions& o, const Report& report) {
@@ -181,6 +199,10 @@ const std::vector<Suite>& list_suites() {
          "a painted rectangle of a map until the next picture, beside a fresh load",
          run_edits_suite,
          {"--size", "--threads", "--isa"}},
+        {"frame",
+         "samples a second of path-traced frames, in turn with another build where --baseline names one",
+         run_frame_suite,
+         {"--scenes", "--baseline", "--size", "--spp", "--engine", "--threads", "--isa"}},
 #ifdef RELIEF_EMBREE
         {"triangles",
          "plain triangle meshes on the CPU against Embree",

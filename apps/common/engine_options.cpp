@@ -20,6 +20,13 @@ constexpr int kMaxDevice = 255;
 
 template <class T> using Word = std::pair<std::string_view, T>;
 
+constexpr std::array<Word<Isa>, 6> kIsas{{{"best", Isa::best},
+                                          {"avx512", Isa::avx512},
+                                          {"avx2", Isa::avx2},
+                                          {"sse4", Isa::sse4},
+                                          {"neon", Isa::neon},
+                                          {"scalar", Isa::scalar}}};
+
 } // namespace
 
 void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
@@ -53,16 +60,12 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
     });
     add("--isa", "NAME", "of the CPU engine: best (default), avx512, avx2, sse4, neon, scalar",
         [&o, &s](const std::string& text) {
-            constexpr std::array<Word<Isa>, 6> words{{{"best", Isa::best},
-                                                      {"avx512", Isa::avx512},
-                                                      {"avx2", Isa::avx2},
-                                                      {"sse4", Isa::sse4},
-                                                      {"neon", Isa::neon},
-                                                      {"scalar", Isa::scalar}}};
-            s.device.isa = parse_word("--isa", text, words);
+            s.device.isa = parse_word("--isa", text, kIsas);
             o.cpu_only.push_back("--isa");
         });
 }
+
+std::string_view isa_name(Isa isa) { return std::ranges::find(kIsas, isa, &Word<Isa>::second)->first; }
 
 void complete_engine_options(const EngineOptions& o, RenderSettings& s) {
     const bool is_cpu = s.device.engine == EngineKind::cpu;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/cli_app.h"
@@ -17,6 +18,9 @@ struct EngineOptions {
 
 /// Adds --engine, --device, --bottom, --threads and --isa; both structures must outlive parsing.
 void add_engine_options(CLI::App& verb, EngineOptions& options, RenderSettings& settings);
+
+/// As --isa has it.
+std::string_view isa_name(Isa isa);
 
 /// Rejects options of the other engine; sets the pipeline cache file of the Vulkan engine.
 void complete_engine_options(const EngineOptions& options, RenderSettings& settings);

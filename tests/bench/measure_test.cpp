@@ -34,6 +34,21 @@ TEST(Measure, takes_the_median_and_the_ends) {
     EXPECT_EQ(even["runs"], 4);
 }
 
+TEST(Measure, quartiles_lie_between_neighbours) {
+    const auto five = summarize_quartiles({5, 1, 4, 2, 3});
+    EXPECT_EQ(five["lower_quartile"], 2.0);
+    EXPECT_EQ(five["median"], 3.0);
+    EXPECT_EQ(five["upper_quartile"], 4.0);
+    const auto four = summarize_quartiles({4, 1, 2, 10});
+    EXPECT_EQ(four["lower_quartile"], 1.75);
+    EXPECT_EQ(four["median"], 3.0);
+    EXPECT_EQ(four["upper_quartile"], 5.5);
+    EXPECT_EQ(four["lowest"], 1.0);
+    EXPECT_EQ(four["highest"], 10.0);
+    EXPECT_EQ(four["runs"], 4);
+    EXPECT_EQ(summarize_quartiles({7})["upper_quartile"], 7.0);
+}
+
 TEST(Measure, warms_up_and_takes_the_variants_in_turn) {
     std::vector<Variant> variants = {make_variant("a"), make_variant("b")};
     std::vector<std::string> lines;

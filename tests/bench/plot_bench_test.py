@@ -63,6 +63,25 @@ with tempfile.TemporaryDirectory() as name:
     assert plot(folder / "gpu").returncode == 0
     assert (folder / "gpu/paper1_table1.svg").read_bytes() == before
 
+    # A baseline that does not tell its stages has its reason there, and one that lacks a stage is no fault.
+    def make_program(speed, stages):
+        return {"samples_per_s": {"median": speed, "lowest": 0.9 * speed, "highest": 1.1 * speed},
+                "stages": {stage: {"seconds": {"median": 1}} for stage in stages}}
+
+    settings = {"engine": "cpu", "width": 8, "height": 4, "samples": 2, "bounces": 4, "threads": 1, "runs": 1}
+    (folder / "frame").mkdir()
+    (folder / "frame/frame.json").write_text(json.dumps({
+        "suite": "frame", "baseline": "old", "settings": settings, "machine": {"processor": ""}, "build": {"commit": ""},
+        "cases": [{"scene": "bark", "isa": "avx2", "relief": make_program(3e6, ["shade", "film"]),
+                   "baseline": make_program(1.5e6, [])},
+                  {"scene": "party", "isa": None, "relief": make_program(7, ["shade"]), "baseline": make_program(8, ["bake"])}]}))
+    assert plot(folder / "frame").returncode == 0
+    texts = read_texts(folder / "frame/frame_speed.svg")
+    assert {"1.5 M/s", "3 M/s", "7 /s", "avx2 baseline", "relief"} <= set(texts), texts
+    texts = read_texts(folder / "frame/frame_stages.svg")
+    assert texts.count("not told") == 1 and {"shading", "film", "bake"} <= set(texts), texts
+    assert count_bars(folder / "frame/frame_stages.svg", "#0072b2") == 3 + 1, "shading: bars, of no height too, and the legend"
+
     # Suites without charts are no error; what is no result is one.
     (folder / "edits").mkdir()
     (folder / "edits/edits.json").write_text('{"suite": "edits"}')
