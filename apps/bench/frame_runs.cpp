@@ -93,6 +93,11 @@ Value describe_frame_runs(const std::vector<FrameRun>& runs, double samples) {
             {"device", find_value(last, {"device"})},
             {"samples_per_s",
              summarize_found(runs.size(), [&](size_t k) { return divide(samples, find_time(runs[k])); })},
+            {"rays_per_sample",
+             summarize_found(runs.size(),
+                             [&](size_t k) {
+                                 return divide(find_number(runs[k].statistics, {"rays", "total"}), samples);
+                             })},
             {"render_s", summarize_path(runs, {"time_s", "render"})},
             {"prepare_s", summarize_path(runs, {"time_s", "prepare"})},
             {"first_image_s", summarize_path(runs, {"time_s", "first_image"})},

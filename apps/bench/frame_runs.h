@@ -9,10 +9,10 @@
 
 namespace relief::bench {
 
-/// {version, device, samples_per_s, render_s, prepare_s, first_image_s, processor_s, peak_resident_bytes,
-/// stages} of at least one run of `samples` samples; all with quartiles but the first two. `stages` has, for
-/// each stage that the statistics name, {seconds, share}: `share` of the median of the stage in the sum of
-/// those of all. What the statistics lack is null, never 0.
+/// {version, device, samples_per_s, rays_per_sample, render_s, prepare_s, first_image_s, processor_s,
+/// peak_resident_bytes, stages} of at least one run of `samples` samples; all with quartiles but the first
+/// two. `stages` has, for each stage that the statistics name, {seconds, share}: `share` of the median of the
+/// stage in the sum of those of all. What the statistics lack is null, never 0.
 Value describe_frame_runs(const std::vector<FrameRun>& runs, double samples);
 
 /// {ratio, ratio_with_preparation, ratio_by_processor}, with quartiles: of pairs of runs, own[k] with

@@ -35,8 +35,8 @@ void add_number(Table& table, Cells cells, const std::string& measure, const Val
 }
 
 void add_program(Table& table, const Cells& cells, const Value& program) {
-    for (const char* measure :
-         {"samples_per_s", "render_s", "prepare_s", "first_image_s", "processor_s", "peak_resident_bytes"})
+    for (const char* measure : {"samples_per_s", "rays_per_sample", "render_s", "prepare_s", "first_image_s",
+                                "processor_s", "peak_resident_bytes"})
         add_summary(table, cells, measure, program[measure]);
     for (const auto& [stage, told] : program["stages"].members()) {
         add_summary(table, cells, stage + "_s", told["seconds"]);
@@ -86,18 +86,13 @@ std::vector<std::string> list_place(const Value& entry) {
 
 std::string make_speed_table(const Value& result) {
     const bool has_baseline = result.contains("baseline");
-    std::vector<std::string> columns = {"scene", "isa", "samples a second, millions", "prepare, s"};
+    std::vector<std::string> columns = {"scene", "isa", "samples a second, millions", "rays a sample",
+                                        "prepare, s"};
     if (has_baseline)
-        columns = {"scene",
-                   "isa",
-                   "samples a second, millions",
-                   "of the baseline",
-                   "ratio",
-                   "with preparation",
-                   "by processor",
-                   "prepare, s",
-                   "baseline's",
-                   "brightness, squared error",
+        columns = {"scene",           "isa",           "samples a second, millions",
+                   "of the baseline", "ratio",         "with preparation",
+                   "by processor",    "rays a sample", "baseline's",
+                   "prepare, s",      "baseline's",    "brightness, squared error",
                    "noise alone"};
     std::string text = make_header(columns);
     for (const Value& entry : result["cases"]) {
@@ -108,11 +103,12 @@ std::string make_speed_table(const Value& result) {
             for (const char* ratio : {"ratio", "ratio_with_preparation", "ratio_by_processor"})
                 cells.push_back(format_spread(entry[ratio], 1));
         }
-        cells.push_back(format_median(entry["relief"]["prepare_s"]));
+        for (const char* measure : {"rays_per_sample", "prepare_s"})
+            for (const char* program : kPrograms)
+                if (entry.contains(program)) cells.push_back(format_median(entry[program][measure]));
         if (has_baseline)
             cells.insert(cells.end(),
-                         {format_median(entry["baseline"]["prepare_s"]), format_difference(entry["picture"]),
-                          format_difference(entry["noise"])});
+                         {format_difference(entry["picture"]), format_difference(entry["noise"])});
         text += make_row(cells);
     }
     return text;

@@ -17,6 +17,7 @@ FrameRun make_run(double prepare_s, double render_s, double processor_s) {
              {"device", {{"engine", "cpu"}, {"threads", 2}}},
              {"time_s", {{"prepare", prepare_s}, {"render", render_s}, {"first_image", 0.5}}},
              {"stage_s", {{"shade", render_s}, {"film", 3 * render_s}}},
+             {"rays", {{"total", 24}}},
              {"memory_bytes", {{"peak_resident", 1000}}}},
             processor_s};
 }
@@ -34,6 +35,7 @@ TEST(FrameRuns, samples_a_second_are_of_the_render_alone) {
     EXPECT_EQ(told["samples_per_s"]["median"], 25.0);
     EXPECT_EQ(told["samples_per_s"]["highest"], 50.0);
     EXPECT_EQ(told["samples_per_s"]["lower_quartile"], 22.5);
+    EXPECT_EQ(told["rays_per_sample"]["median"], 0.24);
     EXPECT_EQ(told["prepare_s"]["median"], 9.0);
     EXPECT_EQ(told["peak_resident_bytes"]["median"], 1000.0);
     EXPECT_EQ(told["version"], "0.1");
@@ -52,7 +54,8 @@ TEST(FrameRuns, what_statistics_lack_is_null) {
     FrameRun old{{{"time_s", {{"render", 2.0}}}, {"stage_s", {{"shade", 1.0}, {"sort", "none"}}}}, 3};
     const Value told = describe_frame_runs({old}, 8);
     EXPECT_EQ(told["samples_per_s"]["median"], 4.0);
-    for (const char* name : {"version", "device", "prepare_s", "first_image_s", "peak_resident_bytes"})
+    for (const char* name :
+         {"version", "device", "rays_per_sample", "prepare_s", "first_image_s", "peak_resident_bytes"})
         EXPECT_EQ(told[name].kind(), Value::Kind::nothing) << name;
     EXPECT_EQ(told["stages"].size(), 1u);
     EXPECT_EQ(told["stages"]["shade"]["share"], 1.0);
@@ -118,9 +121,11 @@ class FrameTables : public testing::Test {
 
 TEST_F(FrameTables, page_has_a_dash_for_what_a_program_does_not_tell) {
     const std::string page = make_frame_page(both_);
-    EXPECT_NE(page.find("| bark | avx2 | 4 (4 to 4) | 2 (2 to 2) | 2 (2 to 2) | - | 2 (2 to 2) | 1 | - | "
-                        "+0.000 %, 0 | +33.333 %, 0.66 |"),
-              std::string::npos)
+    EXPECT_NE(
+        page.find(
+            "| bark | avx2 | 4 (4 to 4) | 2 (2 to 2) | 2 (2 to 2) | - | 2 (2 to 2) | 3e-06 | - | 1 | - | "
+            "+0.000 %, 0 | +33.333 %, 0.66 |"),
+        std::string::npos)
         << page;
     EXPECT_NE(page.find("| scene | isa | program | shade | film | bake |"), std::string::npos) << page;
     EXPECT_NE(page.find("| bark | avx2 | relief | 25.0 % (2 s) | 75.0 % (6 s) | - |"), std::string::npos)
@@ -131,7 +136,7 @@ TEST_F(FrameTables, page_has_a_dash_for_what_a_program_does_not_tell) {
 
 TEST_F(FrameTables, page_of_one_program_has_no_ratio) {
     const std::string page = make_frame_page(alone_);
-    EXPECT_NE(page.find("| bark | avx2 | 4 (4 to 4) | 1 |\n"), std::string::npos) << page;
+    EXPECT_NE(page.find("| bark | avx2 | 4 (4 to 4) | 3e-06 | 1 |\n"), std::string::npos) << page;
     EXPECT_EQ(page.find("ratio"), std::string::npos) << page;
     EXPECT_EQ(page.find("baseline"), std::string::npos) << page;
 }
