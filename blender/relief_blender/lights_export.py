@@ -102,27 +102,40 @@ def make_light(light, matrix_world, report):
 
 
 def find_links(light_object):
-    """(included, excluded) names of objects by light linking."""
-    collection = light_object.original.light_linking.receiver_collection
+    """(included, excluded) names of objects by light linking; those of a collection in it are what the collection is."""
+    collection = light_object.light_linking.receiver_collection
     if collection is None:
         return [], []
-    states = [(o.name_full, entry.light_linking.link_state)
-              for o, entry in zip(collection.objects, collection.collection_objects)]
+    states = [(ob.name_full, entry.light_linking.link_state)
+              for ob, entry in zip(collection.objects, collection.collection_objects)]
+    for child, entry in zip(collection.children, collection.collection_children):
+        states += [(ob.name_full, entry.light_linking.link_state) for ob in child.all_objects]
     return [n for n, s in states if s == "INCLUDE"], [n for n, s in states if s == "EXCLUDE"]
 
 
-def export_light(light_object, matrix_world, report, known):
-    """`known`: names of the objects in the scene, which links may name."""
+def link_light(light, light_object, names):
+    """Adds the keys of light linking once all objects are in the scene, as keys may name those alone.
+
+    names: {name of an object or instancer of Blender: names of the objects of the scene that it is}."""
+    included, excluded = find_links(light_object)
+    lit, unlit = ([own for name in linked for own in names.get(name, ())] for linked in (included, excluded))
+    if included and not lit:  # an empty list would be all of them
+        unlit = [own for owns in names.values() for own in owns]
+    for key, linked in (("light_link_includes", lit), ("light_link_excludes", unlit)):
+        if linked:
+            light[key] = list(dict.fromkeys(linked))
+
+
+def export_light(light_object, matrix_world, report):
+    """The relief.Light of a light, without its links."""
     name = light_object.original.name_full
 
     def tell(text):
         report.add("light", name, text)
     result = make_light(light_object.data, matrix_world, tell)
     result["visible_to_camera"] = bool(light_object.original.visible_camera)
-    includes, excludes = find_links(light_object)
-    for key, names in (("light_link_includes", includes), ("light_link_excludes", excludes)):
-        if names := [n for n in names if n in known]:
-            result[key] = names
     if not light_object.data.use_shadow:
         tell("a light without shadows has shadows")
+    if light_object.original.light_linking.blocker_collection is not None:
+        tell("shadow linking is left out: all objects throw shadows in its light")
     return result

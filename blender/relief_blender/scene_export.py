@@ -5,7 +5,7 @@ import numpy as np
 import relief
 
 from . import axes
-from .lights_export import export_light
+from .lights_export import export_light, link_light
 from .material_export import MaterialExport
 from .mesh_export import MeshExport
 from .world_export import export_world
@@ -43,20 +43,22 @@ class SceneExport:
         self._depsgraph, self._report = depsgraph, report
         self._meshes = MeshExport(self.scene, self.materials, depsgraph, report)
         self._has_catchers = depsgraph.scene.render.film_transparent
+        self._light_objects = []
+        self._names = {}  # what links call objects and instancers: names of objects of the scene
 
     def run(self):
-        lights = []
         for instance in self._depsgraph.object_instances:
             if not instance.show_self:
                 continue
             if instance.object.type in MESH_TYPES:
                 self._add_object(instance)
             elif instance.object.type == "LIGHT":
-                self._add_light(instance, lights)
+                self._add_light(instance)
             elif instance.object.type not in SILENT_TYPES:
                 name = instance.object.original.name_full
                 self._report.add("object", name, f"{instance.object.type.lower()} objects are not taken over")
-        self.scene.lights = lights
+        for light, light_object in zip(self.scene.lights, self._light_objects):
+            link_light(light, light_object, self._names)
         self.scene.environment = export_world(self._depsgraph, self._report)
         self._report_render()
         return self.scene
@@ -66,10 +68,10 @@ class SceneExport:
         if render.use_freestyle:
             self._report.add("scene", "", "Freestyle is left out")
 
-    def _add_light(self, instance, lights):
-        known = {entry["name"] for entry in self.scene.objects}
-        light = export_light(instance.object, instance.matrix_world, self._report, known)
-        lights.append(light)
+    def _add_light(self, instance):
+        light = export_light(instance.object, instance.matrix_world, self._report)
+        self.scene.lights.append(light)
+        self._light_objects.append(instance.object.original)
         self.instances[identify(instance)] = Instance([], [light])
 
     def _is_shown(self, evaluated):
@@ -83,6 +85,9 @@ class SceneExport:
         flags = ("visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
         if not all(getattr(evaluated, flag) for flag in flags):
             self._report.add("object", name, "ray visibility is left out: all rays see it")
+        links = evaluated.original.light_linking
+        if links.receiver_collection is not None or links.blocker_collection is not None:
+            self._report.add("object", name, "light linking of what emits is left out: that of lights alone is taken over")
         for system in evaluated.particle_systems:
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
                 self._report.add("object", name, "hair is not taken over")
@@ -106,6 +111,9 @@ class SceneExport:
                 entry["shadow_catcher"] = True
             entries.append(entry)
         self.scene.objects += entries
+        if entries:
+            for known in {evaluated.original, instance.parent.original if instance.is_instance else evaluated.original}:
+                self._names.setdefault(known.name_full, {})[entries[0]["name"]] = None
         self.instances[identify(instance)] = Instance(entries, [])
 
     def _scale_displacement(self, part, matrix, evaluated):
