@@ -31,6 +31,8 @@ class BakeError(Exception):
 
 def read_base(mesh, uv_name=""):
     """The BaseMesh of a bpy.types.Mesh: smooth normals, as displacement goes along them, and MikkTSpace."""
+    if len(mesh.polygons) == 0:
+        raise BakeError("the base has no faces")
     normals, tangents = mesh_arrays.read_frames(mesh, uv_name)
     arrays = mesh_arrays.read_mesh(mesh, uv_name)
     if arrays.uvs is None:
@@ -75,11 +77,24 @@ def make_map(raster, base, vectors, settings):
     return add_margin(image, mask, settings.margin)
 
 
-def bake_by_rays(base, detailed, settings):
-    """(map, share of texels whose rays found nothing) of a relief.Mesh in the axes of the base."""
+def make_raster(base, settings, report):
+    """The texels of the map. `report` takes a text of what the map cannot hold."""
     raster = Raster(base.uvs, settings.width, settings.height)
     if len(raster.texels) == 0:
         raise BakeError("no texel is inside of the uv map: is it in the unit square?")
+    is_inside = (base.uvs >= -1e-4) & (base.uvs <= 1 + 1e-4)
+    outside = 1 - np.mean(is_inside.all((1, 2)))
+    if outside > 0:
+        report(f"uvs of {100 * outside:.2g} % of the triangles are outside of the unit square: nothing is baked there")
+    if raster.overlap > 1e-3:
+        report(f"{100 * raster.overlap:.2g} % of the texels are of several faces, as of mirrored uvs: the first one counts")
+    return raster
+
+
+def bake_by_rays(raster, base, detailed, settings):
+    """(map, share of texels whose rays found nothing) of a relief.Mesh in the axes of the base."""
+    if len(detailed.sizes) == 0:
+        raise BakeError("the detailed mesh has no faces")
     scene = relief.Scene()
     scene.add(detailed)
     points = raster.interpolate(base.positions)
@@ -92,10 +107,7 @@ def bake_by_rays(base, detailed, settings):
     return make_map(raster, base, vectors, settings), float(missed.mean())
 
 
-def bake_by_points(base, moved, settings):
+def bake_by_points(raster, base, moved, settings):
     """The map of points that correspond: `moved` (points, 3) are those of the base after sculpting."""
-    raster = Raster(base.uvs, settings.width, settings.height)
-    if len(raster.texels) == 0:
-        raise BakeError("no texel is inside of the uv map: is it in the unit square?")
     vectors = raster.interpolate(moved[base.points] - base.positions)
     return make_map(raster, base, vectors, settings)

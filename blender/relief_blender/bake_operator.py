@@ -120,10 +120,14 @@ class RELIEF_OT_bake_map(bpy.types.Operator):
     def _bake_other(self, context, ob, other, settings):
         depsgraph = context.evaluated_depsgraph_get()
         base = bake.read_base(ob.evaluated_get(depsgraph).data)
-        texels, missed = bake.bake_by_rays(base, read_detailed(other, ob, depsgraph), settings)
+        raster = bake.make_raster(base, settings, self._warn)
+        texels, missed = bake.bake_by_rays(raster, base, read_detailed(other, ob, depsgraph), settings)
         if missed > 0:
-            self.report({"WARNING"}, f"rays of {100 * missed:.2g} % of the texels found nothing: 0 there")
+            self._warn(f"rays of {100 * missed:.2g} % of the texels found nothing: 0 there")
         return texels
+
+    def _warn(self, text):
+        self.report({"WARNING"}, text)
 
     def _bake_multires(self, context, ob, multires, settings):
         levels = multires.levels
@@ -136,7 +140,7 @@ class RELIEF_OT_bake_map(bpy.types.Operator):
             base = bake.read_base(mesh)
             if len(mesh.vertices) != len(moved):
                 raise bake.BakeError("other modifiers change the sculpt: apply or remove them")
-        return bake.bake_by_points(base, moved, settings)
+        return bake.bake_by_points(bake.make_raster(base, settings, self._warn), base, moved, settings)
 
 
 def register():

@@ -2,6 +2,7 @@
 from support import BlenderTest, main, make_grid  # first: it makes the add-on known
 import bpy
 import numpy as np
+from relief_blender import bake, bake_texels
 from relief_blender.bake_texels import Raster, add_margin
 
 
@@ -93,6 +94,91 @@ class Bake(BlenderTest):
         self.select(ob, other)
         with self.assertRaisesRegex(RuntimeError, "no uv map"):
             bpy.ops.relief.bake_map()
+
+    def test_meshes_without_faces_are_named(self):
+        ob, other = make_grid(2), make_grid(2)
+        self.select(ob, other)
+        other.data.clear_geometry()
+        with self.assertRaisesRegex(RuntimeError, "the detailed mesh has no faces"):
+            bpy.ops.relief.bake_map(width=16, height=16)
+        self.select(other, ob)
+        with self.assertRaisesRegex(RuntimeError, "the base has no faces"):
+            bpy.ops.relief.bake_map(width=16, height=16)
+
+    def test_uvs_that_a_map_cannot_hold_are_named(self):
+        detailed, ob = make_grid(2), make_grid(2)
+        self.select(ob, detailed)
+        layer = ob.data.uv_layers[0].uv
+        uvs = np.empty(2 * len(layer), np.float32)
+        layer.foreach_get("vector", uvs)
+        uvs = uvs.reshape(-1, 2)
+        cases = ((np.abs(2 * uvs - 1), "first one counts"), (2 * uvs, "outside of the unit square"), (uvs + 3, "no texel is inside"))
+        for moved, wanted in cases:
+            layer.foreach_set("vector", moved.astype(np.float32).ravel())
+            ob.data.update()
+            bpy.context.view_layer.update()
+            texts = self.bake_and_listen()
+            self.assertTrue(any(wanted in text for text in texts), texts)
+
+    def bake_and_listen(self):
+        """What the operator tells, without its kind."""
+        texts = []
+        original = bake.make_raster
+        bake.make_raster = lambda base, settings, report: original(base, settings, texts.append)
+        try:
+            bpy.ops.relief.bake_map(width=32, height=32)
+        except RuntimeError as fault:
+            texts.append(str(fault))
+        finally:
+            bake.make_raster = original
+        return texts
+
+    def test_no_triangles_and_uvs_that_are_no_numbers_have_no_texels(self):
+        nothing = Raster(np.zeros((0, 3, 2)), 8, 4)
+        self.assertEqual((nothing.texels.shape, nothing.weights.shape, nothing.overlap), ((0,), (0, 3), 0))
+        self.assertEqual(nothing.make_image(nothing.interpolate(np.zeros((0, 3, 3))))[0].shape, (4, 8, 3))
+        good = [[0, 0], [1, 0], [1, 1]]
+        for bad in (np.nan, np.inf, -np.inf):
+            with np.errstate(all="raise"):
+                raster = Raster(np.array([[[bad, 0], [1, 0], [0, 1]], good, [[0, 0], [bad, bad], [0, 1]]]), 8, 8)
+            only = Raster(np.array([good], float), 8, 8)
+            np.testing.assert_array_equal(raster.texels[raster.triangles == 1], only.texels, str(bad))
+            self.assertEqual(set(raster.triangles), {1}, str(bad))
+
+    def test_triangles_far_outside_have_no_texels(self):
+        far = np.array([[[5, 5], [6, 5], [5, 6]], [[-3, 0], [-2, 0], [-2, 1]]], float)
+        self.assertEqual(len(Raster(far, 16, 16).texels), 0)
+
+    def test_of_triangles_that_overlap_the_first_one_counts(self):
+        half = np.array([[[0, 0], [1, 0], [0, 1]]], float)
+        raster = Raster(np.concatenate([half, half, 1 - half]), 16, 16)
+        self.assertEqual(set(raster.triangles), {0, 2})
+        self.assertGreater(raster.overlap, 0.3)
+        self.assertEqual(Raster(np.concatenate([half, 1 - half]), 16, 16).overlap, 0)
+
+    def test_large_triangles_are_cut_into_bands_with_the_same_texels(self):
+        rng = np.random.default_rng(3)
+        uvs = rng.uniform(-0.2, 1.2, (20, 3, 2))
+        whole, original = Raster(uvs, 70, 50), bake_texels.CHUNK
+        try:
+            for bake_texels.CHUNK in (1, 64, 200, 1000):
+                cut = Raster(uvs, 70, 50)
+                for name in ("texels", "triangles", "weights", "overlap"):
+                    np.testing.assert_array_equal(getattr(cut, name), getattr(whole, name), name)
+        finally:
+            bake_texels.CHUNK = original
+
+    def test_no_chunk_is_larger_than_two(self):
+        sizes = []
+        fill, Raster._fill = Raster._fill, lambda raster, at, owners, low, high: (
+            sizes.append(int(np.prod(high - low, -1).sum())), fill(raster, at, owners, low, high))[1]
+        original, bake_texels.CHUNK = bake_texels.CHUNK, 4096
+        try:
+            Raster(np.array([[[0, 0], [1, 0], [0, 1]]] * 3, float), 512, 256)
+        finally:
+            Raster._fill, bake_texels.CHUNK = fill, original
+        self.assertLessEqual(max(sizes), 2 * 4096)
+        self.assertGreaterEqual(sum(sizes), 3 * 512 * 256)
 
     def test_texels_are_those_whose_middles_are_inside(self):
         uvs = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
