@@ -78,9 +78,44 @@ def read_frames(mesh, uv_name):
 
 def index_equal(corners, rows):
     """(rows, indices of the corners): equal rows at one point are one, so that uvs and normals stay connected."""
-    keys = np.concatenate([corners[:, None].astype(np.int64), rows.astype(np.float32).view(np.int32)], -1)
-    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    return rows[first], inverse.reshape(-1).astype(np.uint32)
+    first, inverse = find_distinct(np.concatenate([corners[:, None].astype(np.uint32), _read_bits(rows)], -1))
+    return rows[first], inverse
+
+
+def count_places(positions):
+    """How many different places points (N, 3) are at."""
+    return len(find_distinct(_read_bits(positions + np.float32(0)))[0])  # -0 becomes 0
+
+
+def _read_bits(rows):
+    return np.ascontiguousarray(rows, np.float32).view(np.uint32)
+
+
+def find_distinct(keys):
+    """(first, inverse) of the different rows of (N, columns) uint32: indices of one of each, and of each row the index among
+    those. They are in the order of the first column."""
+    # One number of 64 bits a row, so that one sort of numbers does; rows of another hash and the same first column follow.
+    packed = keys[:, 0].astype(np.uint64) << np.uint64(32) | _hash(keys[:, 1:])
+    order = np.argsort(packed, kind="stable")
+    packed, in_order = packed[order], keys[order]
+    is_new = np.ones(len(keys), bool)
+    is_new[1:] = packed[1:] != packed[:-1]
+    if np.any(in_order[1:][~is_new[1:]] != in_order[:-1][~is_new[1:]]):  # two rows of one hash: once in a thousand million
+        _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        return first, inverse.reshape(-1).astype(np.uint32)
+    inverse = np.empty(len(keys), np.uint32)
+    inverse[order] = np.cumsum(is_new, dtype=np.uint32) - np.uint32(1)
+    return order[is_new], inverse
+
+
+def _hash(keys):
+    """32 bits of each row, as uint64."""
+    result = np.zeros(len(keys), np.uint64)
+    for column in keys.T:
+        result ^= column
+        result *= np.uint64(0x9E3779B97F4A7C15)
+        result ^= result >> np.uint64(32)
+    return result & np.uint64(0xFFFFFFFF)
 
 
 def select_faces(arrays, is_chosen):

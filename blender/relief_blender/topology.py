@@ -1,13 +1,15 @@
 """Whether a mesh can be the cage of a subdivision surface."""
 import numpy as np
 
+from .mesh_arrays import count_places
+
 
 def can_be_subdivided(arrays):
     """Each edge has one or two faces, which go along it in opposite ways, and the faces of a point are one fan.
 
     No two points are at one place: Relief takes them for one, Blender does not."""
     used = np.unique(arrays.corners)
-    if len(np.unique(arrays.positions[used], axis=0)) < len(used):
+    if count_places(arrays.positions[used]) < len(used):
         return False
     first = arrays.corners.astype(np.int64)
     starts = np.cumsum(arrays.sizes) - arrays.sizes

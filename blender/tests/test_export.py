@@ -3,7 +3,7 @@ from support import (BlenderTest, displace, main, make_grid, make_hook, make_ima
                      make_object, subdivide)
 import bpy
 import numpy as np
-from relief_blender import images, topology, world_export
+from relief_blender import images, mesh_arrays, topology, world_export
 from relief_blender.camera_export import find_shift
 from relief_blender.material_export import MaterialExport
 from relief_blender.mesh_arrays import MeshArrays, index_equal
@@ -235,6 +235,40 @@ class Meshes(BlenderTest):
         self.assertEqual(len(rows), 3)
         self.assertEqual(indices[0], indices[2])
         self.assertNotEqual(indices[0], indices[1])
+
+    def test_joining_corners_finds_what_sorting_all_columns_finds(self):
+        rng = np.random.default_rng(5)
+        for columns in (2, 3):
+            corners = rng.integers(0, 300, 5000).astype(np.int32)
+            rows = rng.integers(-2, 3, (5000, columns)).astype(np.float32) / 3
+            rows[:50] = np.nan
+            for is_hashed in (True, False):
+                joined, indices = self.join(corners, rows, is_hashed)
+                np.testing.assert_array_equal(joined[indices], rows)
+                bits = np.concatenate([corners[:, None], rows.view(np.int32)], -1)
+                self.assertEqual(len(joined), len(np.unique(bits, axis=0)))
+                owners = np.full(len(joined), -1)
+                owners[indices] = corners
+                np.testing.assert_array_equal(owners[indices], corners)
+                self.assertTrue(np.all(np.diff(owners) >= 0), "in the order of points")
+
+    @staticmethod
+    def join(corners, rows, is_hashed):
+        """index_equal, or with a hash that is the same for all rows."""
+        original = mesh_arrays._hash
+        if not is_hashed:
+            mesh_arrays._hash = lambda keys: np.zeros(len(keys), np.uint64)
+        try:
+            return index_equal(corners, rows)
+        finally:
+            mesh_arrays._hash = original
+
+    def test_corners_of_no_mesh_are_joined_to_nothing(self):
+        rows, indices = index_equal(np.zeros(0, np.int32), np.zeros((0, 3), np.float32))
+        self.assertEqual((rows.shape, indices.shape), ((0, 3), (0,)))
+
+    def test_places_are_counted_whatever_the_sign_of_zero(self):
+        self.assertEqual(mesh_arrays.count_places(np.array([[0, 1, 2], [-0.0, 1, 2], [0, 1, 3]], np.float32)), 2)
 
     def test_hidden_and_unknown_objects(self):
         make_grid(2).hide_render = True
