@@ -6,6 +6,7 @@ import relief
 
 from . import axes, images, values
 from .node_tree import NotExpressible, Wire, follow
+from .node_values import NodeValues
 from .values import Constant, Place, Textured
 
 # As the node has them: red along the tangent, green along the normal, blue along the bitangent.
@@ -59,7 +60,8 @@ class DisplacementReader:
     """Reads what a material's output displaces by. `report` takes a text."""
 
     def __init__(self, material, node_values, report):
-        self._material, self._values, self._report = material, node_values, report
+        self._material, self._report = material, report
+        self._values = NodeValues(report, node_values.texels, missing=None)
 
     def read(self, output):
         """A ReadDisplacement, or None: there is none, or it is named in the report."""
@@ -74,6 +76,9 @@ class DisplacementReader:
             if method == "BOTH":
                 self._report("Displacement and Bump: the displacement has all the detail, the bump is left out")
             return self._read_node(source)
+        except images.MissingImage as fault:
+            self._report("displacement: " + fault.tell("nothing is displaced by it"))
+            return None
         except NotExpressible as fault:
             self._report(f"displacement: {fault} is not taken over")
             return None

@@ -1,5 +1,6 @@
 """Images of Blender as files or as arrays with row 0 at the top, linear Rec.709 unless they are data."""
 import os
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -32,53 +33,110 @@ def find_file(image):
     return os.path.abspath(path) if is_plain_exr(first) else None
 
 
-def _read_pixels(image, report):
+class MissingImage(NotExpressible):
+    """An image of which no texel can be read."""
+
+    def tell(self, instead):
+        """The line of a report. `instead`: what becomes of the thing."""
+        return f"{self}: {instead} (File > External Data > Find Missing Files)"
+
+
+class Pixels(NamedTuple):
+    """An image as Blender has it: rows from the bottom, in the colour space of its file where it has bytes."""
+    texels: np.ndarray  # (height, width, channels), float32 or uint8
+    is_data: bool
+    color_space: str
+
+
+class TileCache:
+    """Tiles as they were last read. Each reading makes and removes an image of the file that is open, which Blender takes for
+    a change of the scene: a viewport that read its tiles anew at each change would begin anew for ever."""
+
+    def __init__(self):
+        self._kept, self._used = {}, set()
+
+    def read(self, path, image):
+        """The Pixels of a file, read with the settings of an image. None: it is no image."""
+        state = os.stat(path)
+        key = path, state.st_mtime_ns, state.st_size, image.colorspace_settings.name, image.alpha_mode
+        self._used.add(key)
+        if key not in self._kept:
+            self._kept[key] = _load_tile(path, image)
+        return self._kept[key]
+
+    def forget_unused(self):
+        """Keeps what was read since the last call."""
+        self._kept = {key: pixels for key, pixels in self._kept.items() if key in self._used}
+        self._used = set()
+
+
+def _fetch(image):
+    """The Pixels of an image, or None."""
     width, height = image.size
     if width * height == 0:
-        raise NotExpressible(f'image "{image.name}" has no pixels: {image.filepath or "no file"}')
+        return None
     texels = np.empty(width * height * image.channels, np.float32)
     image.pixels.foreach_get(texels)
-    texels = texels.reshape(height, width, image.channels)[::-1]
-    rgba = np.ones((height, width, 4), np.float32)
-    rgba[..., :3] = texels[..., :3] if image.channels >= 3 else texels[..., :1]
-    if image.channels in (2, 4):
-        rgba[..., 3] = texels[..., -1]
-    if not image.is_float and not is_data(image):
-        if image.colorspace_settings.name not in LINEAR_SPACES:
-            rgba[..., :3] = decode_srgb(rgba[..., :3])
-        if image.colorspace_settings.name not in LINEAR_SPACES | {"sRGB"}:
-            report(f'colour space "{image.colorspace_settings.name}" of image "{image.name}" is taken as sRGB')
-    return rgba
+    if not image.is_float:
+        texels = np.rint(texels * 255).astype(np.uint8)
+    return Pixels(texels.reshape(height, width, image.channels), is_data(image), image.colorspace_settings.name)
 
 
-def _read_tile(image, number, report):
-    """One tile of a tiled image: from its file, as Blender shows scripts the first one alone."""
-    path = bpy.path.abspath(image.filepath, library=image.library).replace("<UDIM>", str(number))
-    if not os.path.isfile(path):
-        return None
-    tile = bpy.data.images.load(path, check_existing=False)
+def _load_tile(path, image):
+    """From its own file, as Blender shows scripts the first tile alone."""
     try:
-        tile.colorspace_settings.name = image.colorspace_settings.name
-        return _read_pixels(tile, report)
+        tile = bpy.data.images.load(path, check_existing=False)
+    except RuntimeError:
+        return None
+    try:
+        tile.colorspace_settings.name, tile.alpha_mode = image.colorspace_settings.name, image.alpha_mode
+        return _fetch(tile)
     finally:
         bpy.data.images.remove(tile)
 
 
-def read_tiles(image, report):
-    """{1001: (height, width, 4) float32, ...}. `report` takes a text."""
+def _decode(pixels, name, report):
+    """(height, width, 4) float32, row 0 at the top, linear unless they are data."""
+    height, width, channels = pixels.texels.shape
+    texels = pixels.texels[::-1]
+    is_float = texels.dtype != np.uint8
+    rgba = np.ones((height, width, 4), np.float32)
+    rgba[..., :3] = texels[..., :3] if channels >= 3 else texels[..., :1]
+    if channels in (2, 4):
+        rgba[..., 3] = texels[..., -1]
+    if is_float:
+        return rgba
+    rgba[..., :3 if channels in (1, 3) else 4] *= np.float32(1 / 255)
+    if not pixels.is_data and pixels.color_space not in LINEAR_SPACES:
+        rgba[..., :3] = decode_srgb(rgba[..., :3])
+        if pixels.color_space != "sRGB":
+            report(f'colour space "{pixels.color_space}" of image "{name}" is taken as sRGB')
+    return rgba
+
+
+def _fetch_tiles(image, cache):
+    """{udim: Pixels or None} of a tiled image."""
+    pattern = bpy.path.abspath(image.filepath, library=image.library)
+    numbers = [tile.number for tile in image.tiles]
+    paths = {number: pattern.replace("<UDIM>", str(number)) for number in numbers[1:]}
+    result = {number: cache.read(path, image) if os.path.isfile(path) else None for number, path in paths.items()}
+    return {numbers[0]: _fetch(image), **result}
+
+
+def read_tiles(image, report, cache=None):
+    """{1001: (height, width, 4) float32, ...}. `report` takes a text. `cache`: a TileCache."""
     if image.source == "MOVIE":
         raise NotExpressible(f'image "{image.name}" is a movie')
     if image.source == "SEQUENCE":
         report(f'image "{image.name}" is a sequence: one picture of it is used')
-    if image.source != "TILED":
-        return {1001: _read_pixels(image, report)}
-    numbers = [tile.number for tile in image.tiles]
-    tiles = {number: _read_tile(image, number, report) for number in numbers[1:]}
-    tiles[numbers[0]] = _read_pixels(image, report)
-    missing = [str(number) for number, texels in tiles.items() if texels is None]
+    fetched = _fetch_tiles(image, cache or TileCache()) if image.source == "TILED" else {1001: _fetch(image)}
+    tiles = {number: _decode(pixels, image.name, report) for number, pixels in fetched.items() if pixels is not None}
+    if not tiles:
+        raise MissingImage(f'image "{image.name}" has no pixels: {image.filepath or "no file"}')
+    missing = [str(number) for number in fetched if number not in tiles]
     if missing:
         report(f'tiles {" ".join(missing)} of image "{image.name}" are not on disk: save the image')
-    return {number: texels for number, texels in tiles.items() if texels is not None}
+    return tiles
 
 
 def make_image(name, texels, are_data=True):

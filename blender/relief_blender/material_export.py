@@ -9,7 +9,7 @@ from .node_tree import NotExpressible, Wire, find_output
 from .node_values import NodeValues
 from .shaders import FALLBACK, Shaders
 from .textures import TextureWriter
-from .values import Constant, Place, Textured, make_constant
+from .values import Constant, Place, Texels, Textured, make_constant
 
 LAYERED_NUMBERS = ["coat_weight", "coat_roughness", "fuzz_weight", "fuzz_roughness", "base_diffuse_roughness", "roughness"]
 COLORS = {"base_color", "specular_color", "coat_color", "fuzz_color", "transmission_color"}
@@ -31,8 +31,8 @@ class MaterialExport:
     `sources`: the original bpy.types.Material of each name. `derived`: displacements that are others but for a factor of
     their scale, as (name of the other, factor)."""
 
-    def __init__(self, scene, report):
-        self._scene, self._report, self._done = scene, report, {}
+    def __init__(self, scene, report, tiles=None):
+        self._scene, self._report, self._done, self._tiles = scene, report, {}, tiles
         self.sources, self.derived = {}, {}
 
     def export(self, material):
@@ -52,7 +52,7 @@ class MaterialExport:
 
         def report(text):
             self._report.add("material", name, text)
-        node_values = NodeValues(report)
+        node_values = NodeValues(report, Texels(report, self._tiles))
         keys, displacement = self._read(material, node_values, report)
         base = displacement.value.place if displacement else self._choose_place(keys)
         base = Place(base.uv_map, base.scale, base.offset)

@@ -4,20 +4,24 @@ from dataclasses import replace
 import numpy as np
 
 from . import node_math, values
+from .images import MissingImage
 from .node_tree import NotExpressible, Wire, follow
 from .values import Constant, Place, Textured, make_constant
 
 WRAP = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black", "MIRROR": "mirror"}
 FILTER = {"Linear": "none", "Cubic": "bspline", "Smart": "bspline", "Closest": "none"}
 NUMBER_TYPES = {"VALUE", "INT", "BOOLEAN"}
+PINK = (1.0, 0.0, 1.0)  # what Cycles has where an image cannot be read
 
 
 class NodeValues:
-    """Evaluates wires. `report` takes a text of what is only taken over in part."""
+    """Evaluates wires. `report` takes a text of what is only taken over in part.
 
-    def __init__(self, report):
-        self.report = report
-        self.texels = values.Texels(report)
+    missing: the colour of images that cannot be read; None: they are MissingImage."""
+
+    def __init__(self, report, texels=None, missing=PINK):
+        self.report, self._missing = report, missing
+        self.texels = texels or values.Texels(report)
         self._nodes = {
             "ShaderNodeTexImage": self._image, "ShaderNodeMix": self._mix, "ShaderNodeMixRGB": self._mix_rgb,
             "ShaderNodeMath": self._math, "ShaderNodeVectorMath": self._vector_math, "ShaderNodeRGB": self._own,
@@ -69,8 +73,13 @@ class NodeValues:
 
     def _image(self, source):
         node = source.node
-        if node.image is None:
-            raise NotExpressible(f'image texture "{node.name}" has no image')
+        try:
+            self._check(node)
+        except MissingImage as fault:
+            if self._missing is None:
+                raise
+            self.report(fault.tell("it is pink, as in Cycles"))
+            return make_constant(1.0 if source.output.name == "Alpha" else self._missing)
         if node.projection != "FLAT":
             raise NotExpressible(f"projection {node.projection.title()} of an image texture")
         if node.interpolation == "Closest":
@@ -79,6 +88,11 @@ class NodeValues:
                         filter=FILTER[node.interpolation])
         value = Textured(place, node.image, "a" if source.output.name == "Alpha" else "")
         return self._associate_alpha(source, value)
+
+    def _check(self, node):
+        if node.image is None:
+            raise MissingImage(f'image texture "{node.name}" has no image')
+        self.texels.check(node.image)
 
     def _associate_alpha(self, source, value):
         """Where alpha has no link, Cycles multiplies colours by it."""

@@ -36,10 +36,11 @@ def is_made_by_nodes(instance):
 class SceneExport:
     """`scene` is the relief.Scene, filled by run()."""
 
-    def __init__(self, depsgraph, report):
+    def __init__(self, depsgraph, report, tiles=None):
+        """tiles: a TileCache, where the same images may come again."""
         self.scene = relief.Scene()
         self.instances = {}  # Instance by identify()
-        self.materials = MaterialExport(self.scene, report)
+        self.materials = MaterialExport(self.scene, report, tiles)
         self._depsgraph, self._report = depsgraph, report
         self._meshes = MeshExport(self.scene, self.materials, depsgraph, report)
         self._has_catchers = depsgraph.scene.render.film_transparent

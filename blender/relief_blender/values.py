@@ -53,17 +53,22 @@ def pick_channel(rgba, channel):
 
 
 class Texels:
-    """Texels of values; images are read once."""
+    """Texels of values; images are read once. `tiles`: an images.TileCache, or None."""
 
-    def __init__(self, report):
-        self._report = report
+    def __init__(self, report, tiles=None):
+        self._report, self._tiles = report, tiles
         self._read = {}
 
     def read(self, image):
         key = image.name_full
         if key not in self._read:
-            self._read[key] = images.read_tiles(image, self._report)
+            self._read[key] = images.read_tiles(image, self._report, self._tiles)
         return self._read[key]
+
+    def check(self, image):
+        """Raises images.MissingImage where there is nothing to read."""
+        if images.find_file(image) is None:
+            self.read(image)
 
     def tiles(self, value):
         """{udim: (height, width, 3) float32}, factor included."""

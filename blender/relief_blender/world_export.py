@@ -5,7 +5,7 @@ import relief
 from . import images
 from .axes import convert_back
 from .node_tree import NotExpressible, Wire, find_output, follow
-from .node_values import NodeValues
+from .node_values import PINK, NodeValues
 from .values import Constant
 
 BLACK = {"color": [0.0, 0.0, 0.0]}
@@ -148,19 +148,25 @@ class WorldReader:
 
     def _picture(self, source, strength, factor):
         node = source.node
-        if node.image is None:
-            raise NotExpressible("an environment texture without an image")
         matrix = find_rotation(follow(source.input("Vector")), self._values)
         is_mirror_ball = node.projection == "MIRROR_BALL"
-        turn = find_turn(matrix)
+        turn = None if is_mirror_ball else find_turn(matrix)
         keys = {"color": [float(f) for f in factor], "strength": strength}
-        if turn is not None and not is_mirror_ball:
-            keys["rotate_degrees"] = TURN_DEGREES - turn
-            file = images.find_file(node.image)
-            picture = file or np.ascontiguousarray(images.read_tiles(node.image, self._report)[1001][..., :3])
-            return relief.Environment(file=picture, **keys)
-        texels = images.read_tiles(node.image, self._report)[1001][..., :3]
-        return relief.Environment(file=turn_picture(texels, matrix, is_mirror_ball), **keys)
+        try:
+            if turn is None:
+                return relief.Environment(file=turn_picture(self._read(node), matrix, is_mirror_ball), **keys)
+            file = images.find_file(node.image) if node.image is not None else None
+            picture = file or np.ascontiguousarray(self._read(node))
+            return relief.Environment(file=picture, rotate_degrees=TURN_DEGREES - turn, **keys)
+        except images.MissingImage as fault:
+            self._report(fault.tell("it is pink, as in Cycles"))
+            return relief.Environment(color=[p * float(f) for p, f in zip(PINK, factor)], strength=strength)
+
+    def _read(self, node):
+        """(height, width, 3) of an environment texture."""
+        if node.image is None:
+            raise images.MissingImage("its environment texture has no image")
+        return images.read_tiles(node.image, self._report)[1001][..., :3]
 
 
 def export_world(depsgraph, report):
