@@ -2,7 +2,7 @@
 from . import bake_operator, engine, panels, properties, statistics
 
 # In the order in which they need each other.
-_MODULES = [properties, bake_operator, engine, panels]
+_MODULES = [properties, statistics, bake_operator, engine, panels]
 
 
 def register():
@@ -13,4 +13,3 @@ def register():
 def unregister():
     for module in reversed(_MODULES):
         module.unregister()
-    statistics.clear()

@@ -101,7 +101,7 @@ class ReliefEngine(bpy.types.RenderEngine):
         self._show(picture, depsgraph, is_last=True)
         for warning in picture.warnings:
             self._report.add("scene", "", warning)
-        statistics.keep(depsgraph.scene.name, picture.statistics, self._report.lines)
+        statistics.keep(depsgraph.scene, picture.statistics, self._report.lines)
         self._report.tell(lambda line: self.report({"WARNING"}, line))
 
     def _fail(self, fault, scene):
@@ -110,7 +110,7 @@ class ReliefEngine(bpy.types.RenderEngine):
         self.end_result(self.begin_result(0, 0, self.resolution_x, self.resolution_y))
         hint = getattr(fault, "hint", None)
         text = f"Relief: {fault}" + (f" ({hint})" if hint and hint not in str(fault) else "")
-        statistics.keep(scene.name, {}, [text, *self._report.lines])
+        statistics.keep(scene, {}, self._report.lines, text)
         self.error_set(text)
         self._report.tell(lambda line: self.report({"WARNING"}, line))
 

@@ -111,17 +111,20 @@ class RELIEF_PT_statistics(_ReliefPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
-        found = statistics.find(context.scene.name)
+        found = statistics.find(context.scene)
         if found is None:
             self.layout.label(text="No render yet")
             return
-        for label, text in statistics.describe(found[0]):
-            row = self.layout.split(factor=0.5)
-            row.label(text=label)
-            row.label(text=text)
-        if found[1]:
+        if found.fault:
+            self.layout.label(text=found.fault, icon="ERROR")
+        else:
+            for label, text in statistics.describe(found.statistics):
+                row = self.layout.split(factor=0.5)
+                row.label(text=label)
+                row.label(text=text)
+        if found.lines:
             self.layout.label(text="Not taken over:", icon="INFO")
-        for line in found[1]:
+        for line in found.lines:
             self.layout.label(text=line)
 
 

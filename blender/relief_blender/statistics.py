@@ -1,14 +1,25 @@
-"""What the last final render of each scene took, and its report."""
-_kept = {}
+"""What the last final render of each scene took, and its report. Forgotten with the file that the scenes are of."""
+from typing import NamedTuple
+
+import bpy
+
+_kept = {}  # by session_uid: names may be those of another scene later
 
 
-def keep(scene_name, statistics, lines):
-    _kept[scene_name] = (dict(statistics), list(lines))
+class Kept(NamedTuple):
+    statistics: dict  # keys of `relief render --stats`; empty after a fault
+    lines: list       # of the report
+    fault: str        # "" where there is a picture
 
 
-def find(scene_name):
-    """(statistics, lines of the report) or None."""
-    return _kept.get(scene_name)
+def keep(scene, statistics, lines, fault=""):
+    """`scene`: the original bpy.types.Scene, not the evaluated one."""
+    _kept[scene.session_uid] = Kept(dict(statistics), list(lines), fault)
+
+
+def find(scene):
+    """The Kept of a scene, or None."""
+    return _kept.get(scene.session_uid)
 
 
 def describe(statistics):
@@ -29,5 +40,15 @@ def describe(statistics):
             ("Cache", mebibytes("bottom_cache")), ("Peak of the process", mebibytes("peak_resident"))]
 
 
-def clear():
+@bpy.app.handlers.persistent
+def _forget(*_):
+    _kept.clear()
+
+
+def register():
+    bpy.app.handlers.load_post.append(_forget)
+
+
+def unregister():
+    bpy.app.handlers.load_post.remove(_forget)
     _kept.clear()

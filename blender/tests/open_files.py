@@ -51,7 +51,7 @@ def main():
         if "--cycles" in sys.argv:
             theirs = render("CYCLES", file.stem)
             print(f"  by Cycles {theirs[..., :3].mean():.4f}, mean difference {np.abs(ours - theirs)[..., :3].mean():.4f}")
-        for line in statistics.find(bpy.context.scene.name)[1]:
+        for line in statistics.find(bpy.context.scene).lines:
             print(f"  {line}")
     relief_blender.unregister()
 

@@ -87,7 +87,7 @@ class BlenderTest(unittest.TestCase):
 
     def report(self):
         """Lines of what the last render by Relief did not take over."""
-        return statistics.find(bpy.context.scene.name)[1]
+        return statistics.find(bpy.context.scene).lines
 
     def find_depths(self, layers):
         """Along the view axis, from positions: depths are those of one point of each pixel, in Relief of the nearest."""

@@ -28,12 +28,32 @@ class Engine(BlenderTest):
     def test_statistics_and_report_are_kept_for_the_panel(self):
         make_material(make_grid(3), Subsurface_Weight=0.5)
         self.render("RELIEF")
-        found, lines = statistics.find(bpy.context.scene.name)
-        self.assertEqual(len(lines), 1)
+        found, lines, fault = statistics.find(bpy.context.scene)
+        self.assertEqual((len(lines), fault), (1, ""))
         labels = dict(statistics.describe(found))
         self.assertEqual((labels["Instances"], labels["Triangles"]), ("1", "18"), labels)
         self.assertNotIn("0.0 MiB", labels["Peak of the process"])
         self.assertTrue(labels["Device"])
+
+    def test_statistics_are_those_of_a_scene_and_not_of_its_name(self):
+        make_grid(2)
+        self.render("RELIEF", samples=1)
+        scene = bpy.context.scene
+        scene.name, other = "renamed", bpy.data.scenes.new("Scene")
+        self.assertIsNotNone(statistics.find(scene))
+        self.assertIsNone(statistics.find(other))
+
+    def test_statistics_are_forgotten_with_their_file(self):
+        make_grid(2)
+        self.render("RELIEF", samples=1)
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "a.blend"))
+        self.assertEqual(len(statistics._kept), 1)
+        bpy.ops.wm.open_mainfile(filepath=str(self.folder / "a.blend"))
+        self.assertEqual(len(statistics._kept), 0)
+        self.assertIsNone(statistics.find(bpy.context.scene))
+        relief_blender.unregister()
+        self.assertFalse([f for f in bpy.app.handlers.load_post if f.__module__.startswith("relief_blender")])
+        relief_blender.register()
 
     def test_a_scene_without_a_camera_is_a_fault_and_no_crash(self):
         scene = bpy.context.scene
@@ -51,7 +71,7 @@ class Engine(BlenderTest):
             bpy.ops.render.render(write_still=True)
         finally:
             relief.render = original
-        self.assertIn("no such device", statistics.find(scene.name)[1][0])
+        self.assertIn("no such device", statistics.find(scene).fault)
 
     @staticmethod
     def fail_to_render(*arguments, **keywords):
