@@ -106,7 +106,7 @@ def export_camera(depsgraph, report, original=None):
     width, height = max(int(render.resolution_x * factor), 1), max(int(render.resolution_y * factor), 1)
     original = original or scene.camera
     if original is None:
-        raise RuntimeError("the scene has no camera")
+        raise relief.Error("the scene has no camera", hint="Add > Camera, then Scene Properties > Camera")
     camera = original.evaluated_get(depsgraph)
 
     def tell(text):

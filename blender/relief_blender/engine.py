@@ -1,15 +1,18 @@
 """The render engine: final renders and the viewport."""
-import bpy
-import relief
+import time
 
-from . import passes, statistics
+import bpy
+
+from . import faults, passes, statistics
 from .camera_export import export_camera
 from .motion_export import MotionExport
 from .properties import find_threads
-from .render_job import RenderJob
+from .render_job import RenderJob, has_left
 from .report import Report
 from .scene_export import SceneExport
 from .viewport import Viewport
+
+PATIENCE = 1.0  # seconds that a stopped render may take to end
 
 
 def make_settings(scene, view, layers):
@@ -36,7 +39,7 @@ class ReliefEngine(bpy.types.RenderEngine):
 
     def update(self, data, depsgraph):
         """Takes the scene over, in the main thread. A fault is shown by render()."""
-        self._report, self._fault = Report(), None
+        self._report, self._fault = Report(), ""
         self.update_stats("", "Relief: taking over the scene")
         try:
             self._view = export_camera(depsgraph, self._report)
@@ -45,30 +48,42 @@ class ReliefEngine(bpy.types.RenderEngine):
             self._scene.camera = self._view.camera
             self._motion = MotionExport(depsgraph, exporter, self._view, self._report)
             self._motion.run(self.frame_set)
-        except (RuntimeError, ValueError, OSError, relief.Error) as fault:
-            self._fault = fault.with_traceback(None)  # which would hold the engine when Blender lets go of it
+        except Exception as fault:  # whatever Blender is not told is a picture without the scene
+            self._fault = faults.describe(fault)
 
     def render(self, depsgraph):
-        if self._fault is not None:
-            self._fail(self._fault, depsgraph.scene)
-            return
+        try:
+            fault = self._fault or self._render(depsgraph)
+        except Exception as raised:
+            fault = faults.describe(raised)
+        if fault:
+            self._fail(fault, depsgraph.scene)
+
+    def _render(self, depsgraph):
+        """What went wrong, or ""."""
+        while has_left(0.1):
+            self.update_stats("", "Relief: waiting for the end of the render before")
+            if self._is_stopped():
+                return ""
         scene = depsgraph.scene
         layers = passes.find_layers(depsgraph.view_layer)
         passes.report_missing(depsgraph.view_layer, self._report)
-        job = RenderJob(self._scene, {**make_settings(scene, self._view, layers), **self._motion.settings})
+        job = RenderJob(self._scene, {**make_settings(scene, self._view, layers), **self._motion.settings},
+                        on_end=self._motion.make_clean_up())
         self._scene = None
         try:
-            self._follow(job, depsgraph)
+            return self._follow(job, depsgraph)
         finally:
-            job.cancel()
-            job.join()
-            self._motion.clean_up()
+            job.leave()
 
     def _follow(self, job, depsgraph):
+        """What went wrong, or "". A render that is stopped has the picture so far, or none before the first sample."""
+        stopped_at = None
         while True:
             kind, thing = job.poll(0.1)
-            if self._is_stopped():
+            if stopped_at is None and self._is_stopped():
                 job.cancel()
+                stopped_at = time.monotonic()
             if kind == "progress":
                 self.update_progress(thing.fraction)
                 self.update_stats("", f"Sample {thing.samples_done}/{thing.samples_total}")
@@ -76,10 +91,11 @@ class ReliefEngine(bpy.types.RenderEngine):
                 self._show(thing, depsgraph, is_last=False)
             elif kind == "done":
                 self._finish(thing, depsgraph)
-                return
+                return ""
             elif kind == "fault":
-                self._fail(thing, depsgraph.scene)
-                return
+                return "" if job.is_cancelled else faults.describe(thing)
+            elif stopped_at is not None and time.monotonic() - stopped_at > PATIENCE:
+                return ""
 
     def _is_stopped(self):
         return self.test_break()
@@ -104,14 +120,13 @@ class ReliefEngine(bpy.types.RenderEngine):
         statistics.keep(depsgraph.scene, picture.statistics, self._report.lines)
         self._report.tell(lambda line: self.report({"WARNING"}, line))
 
-    def _fail(self, fault, scene):
+    def _fail(self, text, scene):
         """Shows an error; the statistics keep it, as the panel is what one looks at next."""
         # Blender 4.5 ends with a segmentation fault where a render that failed has no result to write.
         self.end_result(self.begin_result(0, 0, self.resolution_x, self.resolution_y))
-        hint = getattr(fault, "hint", None)
-        text = f"Relief: {fault}" + (f" ({hint})" if hint and hint not in str(fault) else "")
         statistics.keep(scene, {}, self._report.lines, text)
-        self.error_set(text)
+        self.error_set(text)           # in the image editor
+        self.report({"ERROR"}, text)   # in a window; scripts get an exception, and no picture is written
         self._report.tell(lambda line: self.report({"WARNING"}, line))
 
     # Viewport

@@ -4,6 +4,7 @@ from typing import NamedTuple
 import numpy as np
 import relief
 
+from . import faults
 from .displacement_export import DisplacementReader
 from .node_tree import NotExpressible, Wire, find_output
 from .node_values import NodeValues
@@ -39,7 +40,8 @@ class MaterialExport:
         """`material` may be None: Blender's grey."""
         key = material.name_full if material else ""
         if key not in self._done:
-            self._done[key] = self._make(material)
+            with faults.place("material", key):
+                self._done[key] = self._make(material)
             if material is not None:
                 self.sources[key] = material.original
         return self._done[key]

@@ -80,11 +80,10 @@ class MotionExport:
             set_frame(frame, subframe)
         self._write()
 
-    def clean_up(self):
-        """Removes the files of deforming meshes, once they have been rendered."""
-        if self._folder is not None:
-            self._folder.cleanup()
-            self._folder = None
+    def make_clean_up(self):
+        """What removes the files of deforming meshes once they have been rendered, or None. It holds nothing of Blender, which
+        a thread that ends late could otherwise not let go of in time."""
+        return self._folder.cleanup if self._folder is not None else None
 
     # At a step
 

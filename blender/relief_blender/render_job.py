@@ -4,28 +4,35 @@ import threading
 
 import relief
 
+_left = []  # threads that nobody waits for
+
 
 class RenderJob:
-    """Renders a relief.Scene; pictures and progress come by poll()."""
+    """Renders a relief.Scene; pictures and progress come by poll(). on_end() is called when the scene is no longer used."""
 
-    def __init__(self, scene, settings, picture_interval=0.5):
+    def __init__(self, scene, settings, picture_interval=0.5, on_end=None):
         self._news = queue.Queue()
         self.on_news = None  # called from the render's thread when there is something for poll()
         self._is_cancelled = threading.Event()
         self._settings = dict(settings, picture_interval=picture_interval)
-        self._thread = threading.Thread(target=self._run, args=(scene,), name="relief", daemon=True)
+        self._thread = threading.Thread(target=self._run, args=(scene, on_end), name="relief", daemon=True)
         self._thread.start()
 
-    def _run(self, scene):
+    def _run(self, scene, on_end):
+        news = None
         try:
             picture = relief.render(scene, progress=self._on_progress, on_picture=self._on_picture, **self._settings)
-            self._tell(("done", picture))
+            news = "done", picture
         except Exception as fault:  # handed to the thread that asked for the render
-            self._tell(("fault", fault))
+            news = "fault", fault
+        finally:
+            if on_end is not None:
+                on_end()
+        self._tell(news)
 
     def _on_progress(self, progress):
         self._tell(("progress", progress))
-        return not self._is_cancelled.is_set()
+        return not self.is_cancelled
 
     def _on_picture(self, picture):
         self._tell(("picture", picture))
@@ -42,8 +49,28 @@ class RenderJob:
         except queue.Empty:
             return None, None
 
+    @property
+    def is_cancelled(self):
+        return self._is_cancelled.is_set()
+
     def cancel(self):
+        """Asks for the end, which is done or fault. It comes soon while there are samples, after preparation before."""
         self._is_cancelled.set()
 
     def join(self):
         self._thread.join()
+
+    def leave(self):
+        """Cancels, for who takes no more news: the thread ends by itself."""
+        self.cancel()
+        if self._thread.is_alive():
+            _left.append(self._thread)
+
+
+def has_left(timeout):
+    """Whether a render that was left goes on after so many seconds: two preparations at once could want too much memory."""
+    _left[:] = [thread for thread in _left if thread.is_alive()]
+    if not _left:
+        return False
+    _left[0].join(timeout)
+    return any(thread.is_alive() for thread in _left)

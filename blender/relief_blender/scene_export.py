@@ -4,7 +4,7 @@ from typing import NamedTuple
 import numpy as np
 import relief
 
-from . import axes
+from . import axes, faults
 from .lights_export import export_light, link_light
 from .material_export import MaterialExport
 from .mesh_export import MeshExport
@@ -49,20 +49,24 @@ class SceneExport:
 
     def run(self):
         for instance in self._depsgraph.object_instances:
-            if not instance.show_self:
-                continue
-            if instance.object.type in MESH_TYPES:
-                self._add_object(instance)
-            elif instance.object.type == "LIGHT":
-                self._add_light(instance)
-            elif instance.object.type not in SILENT_TYPES:
-                name = instance.object.original.name_full
-                self._report.add("object", name, f"{instance.object.type.lower()} objects are not taken over")
+            if instance.show_self:
+                with faults.place("object", instance.object.original.name_full):
+                    self._add(instance)
         for light, light_object in zip(self.scene.lights, self._light_objects):
             link_light(light, light_object, self._names)
-        self.scene.environment = export_world(self._depsgraph, self._report)
+        with faults.place("world", ""):
+            self.scene.environment = export_world(self._depsgraph, self._report)
         self._report_render()
         return self.scene
+
+    def _add(self, instance):
+        kind = instance.object.type
+        if kind in MESH_TYPES:
+            self._add_object(instance)
+        elif kind == "LIGHT":
+            self._add_light(instance)
+        elif kind not in SILENT_TYPES:
+            self._report.add("object", instance.object.original.name_full, f"{kind.lower()} objects are not taken over")
 
     def _report_render(self):
         render = self._depsgraph.scene.render

@@ -1,4 +1,4 @@
-"""The life of the add-on: registering, cancelling, faults, the viewport's renders."""
+"""The life of the add-on: registering, what is kept of renders, the viewport."""
 from support import BlenderTest, main, make_grid, make_material  # first: it makes the add-on known
 import time
 import types
@@ -8,10 +8,7 @@ import numpy as np
 import relief_blender
 from mathutils import Matrix
 from relief_blender import statistics
-from relief_blender.engine import ReliefEngine
 from relief_blender.viewport import Viewport
-
-import relief
 
 
 class Engine(BlenderTest):
@@ -54,40 +51,6 @@ class Engine(BlenderTest):
         relief_blender.unregister()
         self.assertFalse([f for f in bpy.app.handlers.load_post if f.__module__.startswith("relief_blender")])
         relief_blender.register()
-
-    def test_a_scene_without_a_camera_is_a_fault_and_no_crash(self):
-        scene = bpy.context.scene
-        scene.camera, scene.render.engine = None, "RELIEF"
-        with self.assertRaises(RuntimeError):
-            bpy.ops.render.render()
-
-    def test_a_fault_of_the_renderer_is_shown(self):
-        make_grid(2)
-        scene = bpy.context.scene
-        scene.render.engine = "RELIEF"
-        scene.render.filepath = str(self.folder / "fault.exr")
-        original, relief.render = relief.render, self.fail_to_render
-        try:
-            bpy.ops.render.render(write_still=True)
-        finally:
-            relief.render = original
-        self.assertIn("no such device", statistics.find(scene).fault)
-
-    @staticmethod
-    def fail_to_render(*arguments, **keywords):
-        raise relief.Error("no such device")
-
-    def test_breaking_a_render_ends_it_soon(self):
-        make_grid(2)
-        scene = bpy.context.scene
-        scene.render.engine, scene.relief.samples = "RELIEF", 1 << 20
-        original, ReliefEngine._is_stopped = ReliefEngine._is_stopped, lambda engine: True
-        start = time.monotonic()
-        try:
-            bpy.ops.render.render()
-        finally:
-            ReliefEngine._is_stopped = original
-        self.assertLess(time.monotonic() - start, 10)
 
 
 class View(BlenderTest):
