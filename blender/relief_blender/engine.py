@@ -1,5 +1,6 @@
 """The render engine: final renders and the viewport."""
 import time
+import weakref
 
 import bpy
 
@@ -140,12 +141,8 @@ class ReliefEngine(bpy.types.RenderEngine):
     def _find_viewport(self):
         if not hasattr(self, "_viewport"):
             self._viewport = Viewport(self)
+            weakref.finalize(self, self._viewport.close)  # __del__ could no longer read what the engine has
         return self._viewport
-
-    def __del__(self):
-        viewport = getattr(self, "_viewport", None)
-        if viewport is not None:
-            viewport.stop()
 
 
 def find_panels():

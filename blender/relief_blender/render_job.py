@@ -57,9 +57,6 @@ class RenderJob:
         """Asks for the end, which is done or fault. It comes soon while there are samples, after preparation before."""
         self._is_cancelled.set()
 
-    def join(self):
-        self._thread.join()
-
     def leave(self):
         """Cancels, for who takes no more news: the thread ends by itself."""
         self.cancel()
