@@ -89,7 +89,9 @@ def _load_tile(path, image):
     except RuntimeError:
         return None
     try:
-        tile.colorspace_settings.name, tile.alpha_mode = image.colorspace_settings.name, image.alpha_mode
+        if image.colorspace_settings.name:  # else its own, as of an image of which nothing could be read yet
+            tile.colorspace_settings.name = image.colorspace_settings.name
+        tile.alpha_mode = image.alpha_mode
         return _fetch(tile)
     finally:
         bpy.data.images.remove(tile)
@@ -118,9 +120,10 @@ def _fetch_tiles(image, cache):
     """{udim: Pixels or None} of a tiled image."""
     pattern = bpy.path.abspath(image.filepath, library=image.library)
     numbers = [tile.number for tile in image.tiles]
+    first = _fetch(image)  # before the others: an image has no colour space until Blender has read it
     paths = {number: pattern.replace("<UDIM>", str(number)) for number in numbers[1:]}
     result = {number: cache.read(path, image) if os.path.isfile(path) else None for number, path in paths.items()}
-    return {numbers[0]: _fetch(image), **result}
+    return {numbers[0]: first, **result}
 
 
 def read_tiles(image, report, cache=None):

@@ -106,6 +106,19 @@ class Images(BlenderTest):
             self.assertEqual(len(lines), len(broken), lines)
             bpy.data.images.remove(image)
 
+    def test_tiles_of_an_image_that_blender_has_not_read_yet(self):
+        for removed in ((), (1001,)):
+            self.make_tiles()
+            bpy.data.images.remove(bpy.data.images["tile.<UDIM>.png"])
+            bpy.ops.image.open(filepath=str(self.folder / "tile.1001.png"), use_udim_detecting=True)
+            image = bpy.data.images["tile.<UDIM>.png"]
+            for number in removed:
+                (self.folder / f"tile.{number}.png").unlink()
+            tiles = images.read_tiles(image, lambda text: None)
+            self.assertEqual(sorted(tiles), [n for n in (1001, 1002, 1011) if n not in removed])
+            self.assertAlmostEqual(float(tiles[1002][0, 0, 0]), float(images.decode_srgb(np.float32(26 / 255))), places=5)
+            bpy.data.images.remove(image)
+
     def test_a_tiled_image_without_its_first_tile_has_the_others(self):
         image, lines = self.make_tiles(), []
         (self.folder / "tile.1001.png").unlink()

@@ -1,5 +1,5 @@
 """The viewport: its pictures, its faults, and its end."""
-from support import BlenderTest, main, make_grid, make_material  # first: it makes the add-on known
+from support import BlenderTest, main, make_grid, make_image, make_material  # first: it makes the add-on known
 import gc
 import threading
 import time
@@ -9,6 +9,7 @@ from unittest import mock
 import bpy
 import numpy as np
 from mathutils import Matrix
+from relief_blender import images
 from relief_blender import viewport as viewport_module
 from relief_blender.engine import ReliefEngine
 from relief_blender.render_job import RenderJob
@@ -155,6 +156,23 @@ class View(BlenderTest):
             self.viewport.draw(self.make_context(), self.depsgraph)
         self.assertEqual((len(calls), len(self.engine.errors)), (1, 1))
         self.assertIn("no GPU", self.engine.errors[0])
+
+    def test_tiles_of_images_are_read_once_for_all_changes(self):
+        for number in (1001, 1002):
+            tile = make_image("tile", np.full((4, 4, 3), 0.5, np.float32))
+            tile.filepath_raw, tile.file_format = str(self.folder / f"tile.{number}.png"), "PNG"
+            tile.save()
+        bpy.ops.image.open(filepath=str(self.folder / "tile.1001.png"), use_udim_detecting=True)
+        tree = self.grid.active_material.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image = bpy.data.images["tile.<UDIM>.png"]
+        tree.links.new(texture.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+        self.depsgraph = bpy.context.evaluated_depsgraph_get()
+        with mock.patch.object(images, "_load_tile", wraps=images._load_tile) as load:
+            for _ in range(3):
+                self.change(self.make_context())
+            self.assertEqual(load.call_count, 1)
+        self.assertEqual(self.engine.errors, [])
 
     # Its end
 
