@@ -112,7 +112,8 @@ class Bake(BlenderTest):
         uvs = np.empty(2 * len(layer), np.float32)
         layer.foreach_get("vector", uvs)
         uvs = uvs.reshape(-1, 2)
-        cases = ((np.abs(2 * uvs - 1), "first one counts"), (2 * uvs, "outside of the unit square"), (uvs + 3, "no texel is inside"))
+        cases = ((np.abs(2 * uvs - 1), "first one counts"), (2 * uvs, "outside of the unit square"),
+                 (uvs + 3, "no texel is inside"))
         for moved, wanted in cases:
             layer.foreach_set("vector", moved.astype(np.float32).ravel())
             ob.data.update()
