@@ -1,6 +1,9 @@
 // The whole pipeline: scene -> surfaces and levels -> trees -> rays -> film -> image.
 #include "relief/render.h"
 
+#include <functional>
+#include <memory>
+#include <optional>
 #include <ostream>
 #include <utility>
 
@@ -10,12 +13,47 @@
 #include "api/picture_report.h"
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "base/stop_request.h"
 #include "base/timer.h"
 #include "cpu/traversal/kernels.h"
 #include "prepare/prepared_scene.h"
 #include "prepare/validate_settings.h"
 
 namespace relief {
+
+namespace {
+
+struct Stage {
+    std::shared_ptr<const PreparedScene> scene;
+    std::unique_ptr<Engine> engine;
+};
+
+/// None where the observer cancels meanwhile.
+std::optional<Stage> set_up(Scene&& scene, const RenderSettings& settings, const RenderObserver* observer) {
+    const StopScope scope(observer ? [observer] { return observer->is_cancelled(); }
+                                   : std::function<bool()>());
+    try {
+        Stage stage{prepare_scene(std::move(scene), settings, SceneOrigin::camera), nullptr};
+        stage.engine = make_engine(stage.scene, settings);
+        return stage;
+    } catch (const StopRequest&) {
+        return std::nullopt;
+    }
+}
+
+/// Samples are added whole, so that a lost device loses no others.
+bool render_and_save(Engine& engine, Film& film, const RenderControl& control) {
+    bool is_complete = false;
+    try {
+        is_complete = engine.render(film, control);
+    } catch (...) {
+        if (control.save.call) control.save.call();
+        throw;
+    }
+    return is_complete;
+}
+
+} // namespace
 
 RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* observer,
                     const Checkpoints& checkpoints) {
@@ -33,12 +71,16 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         const std::string identity = describe_samples(settings, scene_hash);
         if (checkpoints.resume) film.read(*checkpoints.resume, identity);
         join_parts(checkpoints.parts, settings, scene_hash, mattes, film);
-        std::shared_ptr<const PreparedScene> prepared =
-            prepare_scene(std::move(scene), settings, SceneOrigin::camera);
-        std::unique_ptr<Engine> engine = make_engine(prepared, settings);
+        std::optional<Stage> stage = set_up(std::move(scene), settings, observer);
         statistics.prepare_s = total.seconds();
+        if (!stage) {
+            result.is_complete = false;
+            result.image = film.resolve();
+            add_metadata(settings, scene_hash, false, film, result.image);
+            return;
+        }
 
-        if (observer) observer->on_warnings(prepared->warnings);
+        if (observer) observer->on_warnings(stage->scene->warnings);
         const Timer timer;
         RenderControl control(observer);
         control.save.interval_s = checkpoints.interval_s;
@@ -47,22 +89,15 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
                 if (film.most_samples() > 0)
                     checkpoints.save([&](std::ostream& s) { film.write(s, identity); });
             };
-        show_pictures(film, make_picture_space(*prepared), control);
-        try {
-            result.is_complete = engine->render(film, control);
-        } catch (...) {
-            if (control.save.call)
-                control.save.call(); // samples are added whole: a lost device loses no others
-            throw;
-        }
+        const PictureSpace space = make_picture_space(*stage->scene);
+        show_pictures(film, space, control);
+        result.is_complete = render_and_save(*stage->engine, film, control);
         statistics.render_s = timer.seconds();
         if (control.save.call) control.save.call();
 
         SessionCounts counts;
-        collect_statistics(*engine, film, *prepared, statistics, counts);
-        const PictureSpace space = make_picture_space(*prepared);
-        // Frees their memory before the image is allocated.
-        engine.reset(), prepared.reset();
+        collect_statistics(*stage->engine, film, *stage->scene, statistics, counts);
+        stage.reset(); // frees its memory before the image is allocated
         result.whole_samples = int(film.least_samples());
         result.image = film.resolve(space);
         add_metadata(settings, scene_hash, result.is_complete, film, result.image);

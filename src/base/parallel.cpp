@@ -7,8 +7,10 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/check.h"
+#include "base/stop_request.h"
 
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
@@ -50,6 +52,20 @@ class BodyScope {
     LoopOrder& order_;
 };
 
+/// Of the StopScope that the calling thread works in; null: none.
+thread_local const std::function<bool()>* is_stop_asked_for = nullptr;
+
+/// A body runs in the scope of its loop, whatever thread it is on.
+class InheritedStop {
+  public:
+    explicit InheritedStop(const std::function<bool()>* of_loop)
+        : before_(std::exchange(is_stop_asked_for, of_loop)) {}
+    ~InheritedStop() { is_stop_asked_for = before_; }
+
+  private:
+    const std::function<bool()>* before_;
+};
+
 /// Completes the ordering also when a body throws.
 class LoopScope {
   public:
@@ -59,16 +75,25 @@ class LoopScope {
 
 } // namespace
 
+StopScope::StopScope(std::function<bool()> is_asked_for)
+    : is_asked_for_(std::move(is_asked_for)),
+      outer_(std::exchange(is_stop_asked_for, is_asked_for_ ? &is_asked_for_ : nullptr)) {}
+
+StopScope::~StopScope() { is_stop_asked_for = outer_; }
+
 void parallel_for(const char* name, size_t count, size_t grain,
                   const std::function<void(size_t, size_t)>& body) {
     DCHECK(name && grain > 0);
     tbb::profiling::event trace(name);
     LoopScope loop;
     grain = std::max<size_t>(grain, 1);
+    const std::function<bool()>* const is_asked_for = is_stop_asked_for;
     tbb::parallel_for(
         tbb::blocked_range<size_t>(0, count / grain + (count % grain != 0), 1),
         [&](const tbb::blocked_range<size_t>& range) {
             BodyScope scope(loop.order);
+            const InheritedStop stop(is_asked_for);
+            if (is_asked_for && (*is_asked_for)()) throw StopRequest();
             const size_t begin = range.begin() * grain;
             body(begin, begin + std::min(grain, count - begin));
         },
@@ -86,8 +111,10 @@ int thread_count() { return tbb::this_task_arena::max_concurrency(); }
 void with_threads(int threads, const std::function<void()>& body) {
     tbb::task_arena arena(threads > 0 ? threads : tbb::info::default_concurrency());
     LoopScope loop;
+    const std::function<bool()>* const is_asked_for = is_stop_asked_for;
     arena.execute([&] {
         BodyScope scope(loop.order);
+        const InheritedStop stop(is_asked_for);
         body();
     });
 }

@@ -16,7 +16,7 @@
 #include "cpu/tracer.h"
 #include "engine/picture_windows.h"
 #include "engine/render_passes.h"
-#include "engine/stop_request.h"
+#include "base/stop_request.h"
 
 namespace relief {
 

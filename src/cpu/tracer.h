@@ -86,7 +86,7 @@ class Tracer {
     /// To be called between pictures, passes and spans of rays: makes boxes smaller where that pays by now.
     void rebuild_if_worthwhile() const;
 
-    /// While this lives, rays end with StopRequest (engine/stop_request.h) before the next tree
+    /// While this lives, rays end with StopRequest (base/stop_request.h) before the next tree
     /// that they need once `is_asked_for` is true: a ray at a high level may need many, each of which takes
     /// its time. Any worker asks. To be made and ended while nothing is traced.
     class StopScope {

@@ -6,7 +6,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/timer.h"
-#include "engine/stop_request.h"
+#include "base/stop_request.h"
 #include "formulas/light_layers.h"
 #include "formulas/path.h"
 #include "formulas/pixel_order.h"

@@ -12,7 +12,7 @@
 #include "base/timer.h"
 #include "engine/picture_windows.h"
 #include "engine/render_passes.h"
-#include "engine/stop_request.h"
+#include "base/stop_request.h"
 #include "relief/error.h"
 #include "vulkan/layout/device_rays.h"
 #include "vulkan/path_tracer.h"

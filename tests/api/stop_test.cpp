@@ -57,6 +57,19 @@ TEST(Cancellation, stops_before_the_next_tree_and_leaves_whole_samples) {
     }
 }
 
+TEST(Cancellation, ends_while_the_scene_is_prepared) {
+    const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
+    RenderSettings settings = make_settings(size_t(256) << 20);
+    Canceller at_once(0);
+    const RenderResult result = render(rock, settings, &at_once);
+    EXPECT_EQ(result.statistics.patches, 0u) << "the scene was prepared";
+    EXPECT_LE(at_once.looks, 4);
+    EXPECT_FALSE(result.is_complete);
+    EXPECT_EQ(result.whole_samples, 0);
+    EXPECT_EQ(result.image.width, 16);
+    EXPECT_TRUE(result.image.metadata.contains("relief:interrupted"));
+}
+
 TEST(Cancellation, after_the_last_sample_leaves_the_picture_complete) {
     struct Late final : RenderObserver {
         std::atomic<bool> is_done{false};

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/stop_request.h"
+
 namespace relief {
 namespace {
 
@@ -43,6 +45,31 @@ TEST(Parallel, an_exception_of_a_body_reaches_the_caller) {
         });
     };
     EXPECT_THROW(fail_in_the_middle(), std::runtime_error);
+}
+
+TEST(Parallel, a_stop_ends_loops_within_its_scope_on_all_threads) {
+    std::atomic<bool> is_stopped{false};
+    const auto nest = [&](std::atomic<int>& bodies) {
+        with_threads(3, [&] {
+            parallel_for("outer", 8, 1, [&](size_t, size_t) {
+                parallel_for("inner", 1000, 1, [&](size_t, size_t) {
+                    if (++bodies == 100) is_stopped = true;
+                });
+            });
+        });
+    };
+    std::atomic<int> stopped{0}, whole{0};
+    {
+        const StopScope scope([&] { return is_stopped.load(); });
+        EXPECT_THROW(nest(stopped), StopRequest);
+        const StopScope never({});
+        EXPECT_NO_THROW(nest(whole));
+    }
+    EXPECT_LE(stopped, 100 + 8 * 3) << "work went on";
+    EXPECT_EQ(whole, 8000);
+    whole = 0, is_stopped = true;
+    EXPECT_NO_THROW(nest(whole)) << "after the scope, also on threads that worked in it";
+    EXPECT_EQ(whole, 8000);
 }
 
 TEST(Parallel, invoke_runs_both_and_nests) {

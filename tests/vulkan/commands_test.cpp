@@ -1,7 +1,7 @@
 // Fill, copy, dispatch and their order.
 #include <gtest/gtest.h>
 
-#include "engine/stop_request.h"
+#include "base/stop_request.h"
 #include "formulas/constants.h"
 #include "relief/error.h"
 #include "vulkan/device/commands.h"

@@ -9,7 +9,7 @@
 #include "base/check.h"
 #include "base/machine.h"
 #include "base/timer.h"
-#include "engine/stop_request.h"
+#include "base/stop_request.h"
 
 namespace relief::cpu {
 

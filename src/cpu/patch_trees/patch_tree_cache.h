@@ -116,7 +116,7 @@ class PatchTreeCache {
     };
 
     /// Asked before every tree or directory that is made, by any worker: true makes look-ups throw
-    /// StopRequest (engine/stop_request.h). Empty: never. Not while a context is taken.
+    /// StopRequest (base/stop_request.h). Empty: never. Not while a context is taken.
     void set_stop(std::function<bool()> is_asked_for) { is_stop_asked_for_ = std::move(is_asked_for); }
 
     /// Forgets the trees and directories that `is_stale` picks. Not while a context is taken.

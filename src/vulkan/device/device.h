@@ -73,7 +73,7 @@ class Device {
     uint64_t allocated_bytes(Purpose purpose) const;
     uint64_t peak_bytes(Purpose purpose) const;
 
-    /// While this lives, what comes next on the device ends with StopRequest (engine/stop_request.h) once it
+    /// While this lives, what comes next on the device ends with StopRequest (base/stop_request.h) once it
     /// is asked for: before each compilation and submission, and on a CPU device, which takes seconds for the
     /// launch of a large batch, also between its parts (Commands). Not while another thread uses the device.
     class StopScope {

@@ -8,7 +8,7 @@
 
 #include <vulkan/vulkan_raii.hpp>
 
-#include "engine/stop_request.h"
+#include "base/stop_request.h"
 #include "vulkan/device/buffer.h"
 #include "vulkan/device/device.h"
 #include "vulkan/device/memory.h"
