@@ -40,6 +40,12 @@ void check_rectangle(const MapEdit& edit, const Texture& map) {
                fmt::format("{} x {} texels at ({}, {}) leave the map of {} x {}", texels.width, texels.height,
                            edit.x, edit.y, map.width, map.height),
                "columns and rows count from 0 at the top left");
+    if (texels.channel_count == 0 || map.channel_count == 0) return;
+    if ((texels.channel_count >= 3) != (map.channel_count >= 3))
+        refuse(edit,
+               fmt::format("its texels have {} {}, and those of the map {}", texels.channel_count,
+                           texels.channel_count == 1 ? "channel" : "channels", map.channel_count),
+               map.channel_count >= 3 ? "give vectors" : "give heights, one channel");
 }
 
 uint64_t hash_edit(uint64_t hash, const MapEdit& edit) {
