@@ -4,9 +4,11 @@
 
 namespace relief::python {
 
-/// Around a call that releases the GIL. When Python ends meanwhile, the end waits for the call, and the
-/// thread, which only a daemon thread can be, never goes back to Python: it sleeps until the process is gone.
-/// Made and destroyed with the GIL held; throws Error{failed} when Python has ended already.
+/// Around a call that releases the GIL; may be within another of the same thread, by a callback. When Python
+/// ends meanwhile, the end waits for the outermost call, and the thread, which only a daemon thread can be,
+/// never goes back to Python: it sleeps until the process is gone. A visit that begins later sleeps as well,
+/// or throws Error{failed} on the thread that ends Python and within a visit from before. Made and destroyed
+/// with the GIL held.
 class GateVisit {
   public:
     GateVisit();
