@@ -34,15 +34,9 @@ void save(Picture& picture, const std::string& file, const std::map<std::string,
     const GateVisit visit;
     const nb::gil_scoped_release release;
     const std::lock_guard lock(picture.mutex);
-    const std::map<std::string, std::string> own = picture.image.metadata;
+    picture.image.metadata = picture.metadata;
     for (const auto& [key, value] : entries) picture.image.metadata[key] = value;
-    try {
-        write_image(picture.image, file);
-    } catch (...) {
-        picture.image.metadata = own;
-        throw;
-    }
-    picture.image.metadata = own;
+    write_image(picture.image, file);
 }
 
 nb::object read_picture(const std::string& file) {
@@ -81,7 +75,7 @@ void add_pictures(nb::module_& module) {
                      })
         .def_prop_ro("full_size",
                      [](const Picture& p) { return nb::make_tuple(p.image.full_width, p.image.full_height); })
-        .def_prop_ro("metadata", [](const Picture& p) { return p.image.metadata; });
+        .def_prop_ro("metadata", [](const Picture& p) { return p.metadata; });
     module.def("read_image", &read_picture, nb::arg("file"));
     module.def("read_texture", &read_texels, nb::arg("file"));
 }

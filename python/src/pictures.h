@@ -1,7 +1,9 @@
 // Pictures as Python has them: the pixels stay where the library made them.
 #pragma once
 
+#include <map>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include <nanobind/nanobind.h>
@@ -11,10 +13,11 @@
 namespace relief::python {
 
 struct Picture {
-    Image image;
-    std::mutex mutex; ///< of its metadata while it is written
+    Image image;                                       ///< its metadata: only by who holds the mutex
+    const std::map<std::string, std::string> metadata; ///< its own; with other entries while it is written
+    std::mutex mutex;
 
-    explicit Picture(Image&& made) : image(std::move(made)) {}
+    explicit Picture(Image&& made) : image(std::move(made)), metadata(image.metadata) {}
 };
 
 nanobind::object make_picture(Image&& image);
