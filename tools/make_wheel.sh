@@ -17,14 +17,15 @@ fi
 plain=$(mktemp -d)
 trap 'rm -rf "$plain"' EXIT
 "$python" -m pip wheel -q --no-deps --no-build-isolation -w "$plain" .
-mkdir -p "$output"
-PATH=$(realpath "$folder/bin"):$PATH "$python" -m auditwheel repair -w "$output" "$plain"/relief-*.whl
+PATH=$(realpath "$folder/bin"):$PATH "$python" -m auditwheel repair -w "$plain/whole" "$plain"/relief-*.whl
 python3 -m venv "$plain/fresh"
-"$plain/fresh/bin/python" -m pip install -q --disable-pip-version-check "$(ls -t "$output"/relief-*.whl | head -n 1)"
+"$plain/fresh/bin/python" -m pip install -q --disable-pip-version-check "$plain"/whole/relief-*.whl
 (cd "$plain" && fresh/bin/python - <<'END'
 import relief
 mesh = relief.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
 print(relief.render(relief.Scene.from_mesh(mesh), size=(64, 64), spp=1))
 END
 )
+mkdir -p "$output"
+mv "$plain"/whole/relief-*.whl "$output"
 ls "$output"
