@@ -242,13 +242,16 @@ class Places(UsdTest):
         self.assertEqual(self.load().objects[0]["name"], "/a/m")
 
     def test_what_is_not_a_stage_is_an_error(self):
-        for text, name in (("no stage", "bad.usda"), (None, "missing.usda")):
+        broken = '#usda 1.0\ndef Xform "a"\n{\n    double x = \n}\n'
+        for text, name, words in (("no stage", "bad.usda", "is not a USD file"), (None, "missing.usda", "no such file"),
+                                  (broken, "broken.usda", "line 4, column .*double x")):
             path = os.path.join(self.folder.name, name)
             if text:
                 pathlib.Path(path).write_text(text)
             with self.assertRaises(relief.Error) as caught:
                 relief.usd.load(path)
             self.assertEqual(caught.exception.where, path)
+            self.assertRegex(caught.exception.message, words)
             self.assertTrue(caught.exception.hint)
         empty = stages.create(self.path)
         with self.assertRaisesRegex(relief.Error, "no mesh"):

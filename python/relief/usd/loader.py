@@ -25,6 +25,14 @@ NOT_SHAPES = ("Xform", "Scope", "Material", "Shader", "NodeGraph", "GeomSubset",
               "PhysicsScene", "LightFilter")
 
 
+def explain(error: Tf.ErrorException, path: str) -> str:
+    """The first of the errors, with its line of the file."""
+    found = re.search(r" in file \S+ : '(.*?)\s*'(?=\n|$)", str(error), re.S)
+    text = " ".join(found.group(1).split()) if found else str(error).strip().splitlines()[-1]
+    place = re.match(re.escape(path) + r":(\d+):(\d+): *(.*)", text)
+    return f"line {place.group(1)}, column {place.group(2)}: {place.group(3)}" if place else text
+
+
 def open_stage(path: str) -> Usd.Stage:
     if not os.path.exists(path):
         raise make_error("no such file", path, "is the path relative to another folder?")
@@ -32,8 +40,7 @@ def open_stage(path: str) -> Usd.Stage:
     try:
         stage = Usd.Stage.Open(path, Usd.Stage.LoadAll)
     except Tf.ErrorException as error:
-        raise make_error(f"is not a USD file: {str(error).strip().splitlines()[-1]}", path,
-                         "usd, usda, usdc and usdz are read") from None
+        raise make_error(f"is not a USD file: {explain(error, path)}", path, "usd, usda, usdc and usdz are read") from None
     finally:
         warnings.TakeUncoalescedDiagnostics()
     if stage is None:
