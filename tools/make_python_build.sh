@@ -7,7 +7,7 @@ folder=$1
 python=$folder/bin/python
 if ! [ -e "$folder/complete" ]; then
     if ! { python3 -m venv "$folder" &&
-        "$python" -m pip install -q --disable-pip-version-check 'nanobind>=2.4' 'numpy>=1.22' 'scikit-build-core>=0.10' &&
+        "$python" -m pip install -q --disable-pip-version-check 'nanobind>=2.4' 'numpy>=1.23' 'scikit-build-core>=0.10' &&
         { "$python" -m pip install -q --disable-pip-version-check mypy matplotlib || true; }; } >&2; then
         echo "The Python module is left out: its tools cannot be had from the package index." >&2
         echo "-DRELIEF_PYTHON=OFF"

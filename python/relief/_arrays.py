@@ -1,6 +1,7 @@
 """Arrays of callers as the extension takes them, or exceptions that name the argument and its shape."""
 from __future__ import annotations
 
+import os
 from typing import Any, Optional
 
 import numpy as np
@@ -28,6 +29,14 @@ def to_numpy(value: Any, name: str) -> Array:
         return np.asarray(value)
     except (TypeError, ValueError) as error:
         raise TypeError(f"{name}: {error}") from None
+
+
+def as_path(value: Any, name: str, wanted: str) -> str:
+    """wanted: what may stand there, for the message."""
+    if not isinstance(value, (str, os.PathLike)):
+        shown = describe(value) if isinstance(value, np.ndarray) else type(value).__name__
+        raise TypeError(f"{name}: {wanted} is needed, not {shown}")
+    return os.fspath(value)
 
 
 def describe(array: Array) -> str:

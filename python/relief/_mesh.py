@@ -82,8 +82,10 @@ class Mesh:
             edges, sharpness = to_numpy(creases[0], "creases"), as_floats(creases[1], "sharpness of creases", None)
         else:
             rows = as_floats(np.zeros((0, 3)) if len(creases) == 0 else creases, "creases", 3)
-            edges, sharpness = to_numpy(creases, "creases")[:, :2] if len(rows) else np.zeros((0, 2)), np.ascontiguousarray(rows[:, 2])
-            edges = np.asarray(edges).astype(np.int64)
+            edges = np.asarray(to_numpy(creases, "creases")[:, :2] if len(rows) else np.zeros((0, 2)))
+            if edges.dtype.kind == "f" and not (np.isfinite(edges).all() and (edges == np.floor(edges)).all()):
+                raise ValueError("creases: the first two of a row are indices of positions, whole numbers")
+            edges, sharpness = edges.astype(np.int64), np.ascontiguousarray(rows[:, 2])
         if edges.ndim != 2 or edges.shape[1] != 2:
             raise ValueError(f"creases: the shape of edges is {edges.shape}, not (K, 2)")
         self.creases = as_indices(edges.reshape(-1), "creases", len(self.positions)).reshape(-1, 2)
@@ -113,8 +115,12 @@ class Mesh:
                 arrays[f"{name[:-1]}_indices"] = as_indices(indices, f"{name[:-1]}_indices", len(values))
             self._check_count(arrays[name], indices, name)
         if self.creases is not None and self.sharpness is not None:
-            arrays["creases"] = np.ascontiguousarray(self.creases, dtype=np.uint32)
+            edges = to_numpy(self.creases, "creases")
+            if edges.ndim != 2 or edges.shape[1] != 2:
+                raise ValueError(f"creases: the shape of edges is {edges.shape}, not (K, 2)")
+            arrays["creases"] = as_indices(edges.reshape(-1), "creases", len(self.positions)).reshape(-1, 2)
             arrays["sharpness"] = as_floats(self.sharpness, "sharpness of creases", None)
+            check_finite(arrays["sharpness"], "sharpness of creases")
             if len(arrays["creases"]) != len(arrays["sharpness"]):
                 raise ValueError(f"creases: {len(arrays['creases'])} edges and {len(arrays['sharpness'])} sharpnesses")
         return arrays

@@ -8,7 +8,7 @@ import numpy as np
 from . import _relief
 from ._arrays import Array, as_floats, to_numpy
 from ._render import choose_cache
-from ._scene import Path, Scene, parse_any
+from ._scene import Renderable, parse_any
 
 NOTHING = 0xFFFFFFFF
 HIT_TYPE = np.dtype([("t", "f4"), ("object", "u4"), ("patch", "u4"), ("uv", "f4", 2), ("normal", "f4", 3)])
@@ -81,13 +81,13 @@ def read_rays(origins: Any, directions: Any, t_min: Any, t_max: Any) -> Array:
 
 
 class Intersector:
-    """A scene prepared for rays, for any number of threads. scene: a Scene, or the file of a scene or mesh.
+    """A scene prepared for rays, for any number of threads. scene: a Scene, a Mesh, or the file of a scene or mesh.
 
     settings: engine, device, threads, level, pixel_error, mode, lod, leaf, cache_mb, isa, structure, traversal, ... of
     render(), and picture_height, 720: pixels of the camera's view, which automatic levels come from. frame: of values with
     keys."""
 
-    def __init__(self, scene: Union[Scene, Path], frame: Optional[float] = None, **settings: Any) -> None:
+    def __init__(self, scene: Renderable, frame: Optional[float] = None, **settings: Any) -> None:
         keywords = choose_cache({key: value for key, value in settings.items() if value is not None})
         self._intersector = _relief.Intersector(parse_any(scene, frame), keywords)
 

@@ -12,7 +12,7 @@ from ._arrays import as_texels
 from ._parts import Camera
 from ._picture import Picture
 from ._progress import Callback, open_progress
-from ._scene import Path, Scene, parse_any
+from ._scene import Path, Renderable, Scene, parse_any
 
 PictureCallback = Callable[[Picture], Any]
 
@@ -74,16 +74,16 @@ def finish(answer: tuple[Any, ...], entries: dict[str, str]) -> Picture:
     return picture
 
 
-def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None, spp: Optional[int] = None,
+def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Optional[int] = None,
            bounces: Optional[int] = None, seed: Optional[int] = None, engine: Optional[str] = None,
            device: Optional[int] = None, threads: Optional[int] = None, layers: Union[Sequence[str], str, None] = None,
            crop: Optional[Sequence[int]] = None, background: Union[str, Sequence[float], None] = None,
            noise: Optional[float] = None, time_limit: Optional[float] = None, clamp_indirect: Optional[float] = None,
            level: Union[int, str, None] = None, pixel_error: Optional[float] = None, mode: Optional[str] = None,
-           denoise: Union[bool, Path] = False, first_sample: Optional[int] = None, cache_mb: Optional[int] = None,
-           frame: Optional[float] = None, progress: Union[bool, Callback, None] = None,
+           denoise: Union[bool, Path] = False, check_maps: bool = True, first_sample: Optional[int] = None,
+           cache_mb: Optional[int] = None, frame: Optional[float] = None, progress: Union[bool, Callback, None] = None,
            on_picture: Optional[PictureCallback] = None, picture_interval: float = 0.5, **more: Any) -> Picture:
-    """Renders a Scene, or the file of a scene or mesh. Without the GIL: other threads of Python go on.
+    """Renders a Scene, a Mesh, or the file of a scene or mesh. Without the GIL: other threads of Python go on.
 
     size: width and height, pixels; (1280, 720) unless the scene says another. spp: samples a pixel, 64. bounces: path
     length, 4. seed: 0. engine: "cpu" or "vulkan". threads: 0, all cores. layers: of depth, N, Ng, P, albedo, uv, id, ...
@@ -91,12 +91,14 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
     noise: no more samples where the error is below this share of the brightness. time_limit: seconds.
     level: "auto", or 2^level cells a side of each patch. pixel_error: size of cells aimed at, pixels.
     mode: "direct" or "tessellated". denoise: True, or the library or folder of Open Image Denoise 2. first_sample: of a
-    range of samples. cache_mb: cap of the cache of patch trees. frame: of values with keys and of files with `####`, may
+    range of samples. check_maps: warn of maps whose values speak against what is said of them; a few hundredths of a second a
+    map. cache_mb: cap of the cache of patch trees. frame: of values with keys and of files with `####`, may
     lie between two; the first of the scene's render.frames unless given; with motion blur where the camera has a "shutter".
     more: lod, bounce_levels, leaf, isa, structure, traversal,
     method, bottom, pipeline_cache, as the options of `relief render`.
 
-    progress: True for a bar, or a function of a Progress. on_picture: a function of the Picture so far, called as soon as
+    progress: True for a bar, or a function of a Progress, which is called several times a second from the start on, also while
+    the scene is prepared. on_picture: a function of the Picture so far, called as soon as
     every pixel has a sample and then every picture_interval seconds. Both are called by this thread; where they return
     False the render stops. Where they raise, it stops, and the exception has the picture so far as `picture`.
 
@@ -111,7 +113,7 @@ def render(scene: Union[Scene, Path], *, size: Optional[tuple[int, int]] = None,
     denoisers = [] if denoise is False else find_denoisers() if denoise is True else [os.fspath(denoise)]
     with open_progress(progress) as callback:
         answer = _relief.render(parse_any(scene, frame), keywords, callback, wrap_picture(on_picture, entries), picture_interval,
-                                denoise is not False, denoisers)
+                                check_maps, denoise is not False, denoisers)
     return finish(answer, entries)
 
 
@@ -122,9 +124,10 @@ class Session:
     """A scene that stays prepared while its displacement maps are edited and its camera moves: pictures after the first cost
     what changed.
 
-    frame: of values with keys, at an instant. settings: the other keywords of render() but for denoise. Not for several threads at once."""
+    scene: as for render(). frame: of values with keys, at an instant. settings: the other keywords of render() but for denoise
+    and check_maps. Not for several threads at once."""
 
-    def __init__(self, scene: Union[Scene, Path], frame: Optional[float] = None, **settings: Any) -> None:
+    def __init__(self, scene: Renderable, frame: Optional[float] = None, **settings: Any) -> None:
         keywords = choose_cache({key: value for key, value in settings.items() if value is not None})
         self._keywords = keywords
         self._entries = make_entries(keywords)

@@ -10,7 +10,7 @@ from typing import Any, Mapping, Optional, Union, cast
 import numpy as np
 
 from . import _relief
-from ._arrays import Array, as_texels, is_array, to_numpy
+from ._arrays import Array, as_path, as_texels, is_array, to_numpy
 from ._errors import Error
 from ._mesh import Mesh
 from ._parts import Camera, Displacement, Environment, Light, Material
@@ -19,6 +19,7 @@ from ._save import is_moving, put_motion
 Path = Union[str, "os.PathLike[str]"]
 
 SECTIONS = ("version", "render", "camera", "environment", "materials", "displacements", "meshes", "objects", "lights")
+NAMED_SECTIONS = ("materials", "displacements", "meshes")
 # Keys that hold the name of a picture, or an object with one.
 PICTURE_KEYS = re.compile(r"^(file|.*_texture)$")
 
@@ -132,8 +133,8 @@ class Scene:
         try:
             with open(path, encoding="utf-8") as stream:
                 root = json.loads(strip_comments(stream.read()))
-            if not isinstance(root, dict) or set(root) - set(SECTIONS):
-                raise ValueError
+            if not _has_sections(root):
+                raise ValueError("this is not a scene of version 1")
         except (OSError, ValueError):
             _relief.load_scene(path)  # says what is wrong, and where
             raise
@@ -150,20 +151,26 @@ class Scene:
 
     @classmethod
     def from_mesh(cls, mesh: Union[Mesh, Path], displacement: Any = None, material: Any = None, environment: Any = None,
-                  subdivision: Optional[Mapping[str, Any]] = None) -> Scene:
+                  subdivision: Optional[Mapping[str, Any]] = None, preset: Optional[str] = None) -> Scene:
         """A mesh with automatic camera and light. displacement: a Displacement, or a map: an array or a name of a file.
-        environment: a picture of the light (array or name); None: a soft sky and a sun."""
+        preset: of the program that the map is from, as --preset of the command. environment: a picture of the light (array or
+        name); None: a soft sky and a sun."""
         scene = cls()
-        keys = {"file": mesh if isinstance(mesh, Mesh) else os.path.abspath(os.fspath(mesh))}
+        name = None if isinstance(mesh, Mesh) else as_path(mesh, "mesh", "a Mesh, or the name of a file")
+        keys: dict[str, Any] = {"file": mesh if name is None else os.path.abspath(name)}
         if subdivision is not None:
-            keys["subdivision"] = cast(Any, dict(subdivision))
+            keys["subdivision"] = dict(subdivision)
+        if preset is not None:
+            if displacement is None:
+                raise Error("a preset is of a displacement, and there is none", where="preset")
+            displacement = {**_make_displacement(displacement), "preset": preset}
         if environment is not None:
             is_part = isinstance(environment, Mapping)
             scene.environment = _fill(Environment(), environment) if is_part else Environment(_absolute(environment))
         scene.add(keys, displacement, material)
         parsed = scene._parse()
         parsed.complete()
-        said = parsed.describe()
+        said = parsed.describe(len(scene.objects))
         scene.camera = Camera(said["camera"])
         scene.environment = _fill(Environment(), {**(scene.environment or {}), **said["environment"]})
         scene.lights = [Light(sun) for sun in said["suns"]]
@@ -205,8 +212,7 @@ class Scene:
         entry["mesh"] = self._register(self.meshes, mesh, name or "mesh", is_named=True)
         if displacement is not None:
             is_known = isinstance(displacement, str) and displacement in self.displacements
-            is_part = isinstance(displacement, Mapping) and not _is_tiles(displacement)
-            part = displacement if is_known or is_part else Displacement(_absolute(displacement))
+            part = displacement if is_known else _make_displacement(displacement)
             entry["displacement"] = self._register(self.displacements, part, name or "displacement")
         if material is not None:
             entry["material"] = self._register(self.materials, material, name or "material")
@@ -237,12 +243,13 @@ class Scene:
 
         view: front, back, left, right, top or three-quarter. from_, to: (x, y, z). fov: vertical, degrees. zoom: all so
         many times as large as the camera shows it now. env_rotate: degrees. light: suns in place of the scene's, a list of
-        (azimuth, elevation), degrees. ground: True, or "shadow". size: of the picture to come."""
+        (azimuth, elevation), degrees. ground: True, a grey floor below all, or "shadow", a floor that shows the shadows on it
+        and is clear elsewhere: with background="transparent" for compositing. size: of the picture to come."""
         parsed = self._parse()
         suns = None if light is None else [light] if np.ndim(light) == 1 else list(light)
         parsed.aim({"view": view, "from_": from_, "to": to, "fov": fov, "zoom": zoom, "frame_all": frame_all,
                     "env_rotate": env_rotate, "env_strength": env_strength, "light": suns, "ground": ground}, size[0] / size[1])
-        said = parsed.describe()
+        said = parsed.describe(len(self.objects))
         self.camera = Camera(said["camera"])
         if self.environment is not None:
             for key in ("strength", "rotate_degrees"):
@@ -282,9 +289,34 @@ class Scene:
         return f"Scene({len(self.objects)} objects, {len(self.meshes)} meshes, {len(self.lights)} lights)"
 
 
+def _has_sections(root: Any) -> bool:
+    """Whether all sections are of the types that the parts of a scene are made of."""
+    if not isinstance(root, dict) or set(root) - set(SECTIONS):
+        return False
+    version = root.get("version", 1)
+    if isinstance(version, bool) or version != 1:
+        return False
+    one = [root.get(section, {}) for section in ("render", "camera", "environment", *NAMED_SECTIONS)]
+    lists = [root.get(section, []) for section in ("objects", "lights")]
+    named = [part for section in NAMED_SECTIONS for part in dict(root.get(section, {})).values()] \
+        if all(isinstance(part, dict) for part in one) else [None]
+    return all(isinstance(part, list) for part in lists) and all(isinstance(part, dict) for part in sum(lists, named))
+
+
 def _fill(part: Any, keys: Mapping[str, Any]) -> Any:
     part.update(keys)
     return part
+
+
+def _make_displacement(value: Any) -> Any:
+    """Of a part, which stays the same object, or of a map: a name of a file, an array or tiles."""
+    if isinstance(value, Mapping) and not _is_tiles(value):
+        return value
+    if is_array(value) and to_numpy(value, "displacement").ndim < 2:
+        as_texels(value, "displacement")  # says what its shape is
+    if not is_array(value) and not _is_tiles(value):
+        as_path(value, "displacement", "a Displacement, an array, tiles, or the name of a file")
+    return Displacement(_absolute(value))
 
 
 def _is_tiles(value: Any) -> bool:
@@ -302,9 +334,14 @@ def _make_name(wanted: str, taken: set[str]) -> str:
     return name
 
 
-def parse_any(scene: Union[Scene, Path], frame: Optional[float] = None) -> _relief.Scene:
-    """Of a Scene, a scene file, or a mesh file; at a frame, where values have keys. None: the first."""
+Renderable = Union[Scene, Mesh, Path]
+
+
+def parse_any(scene: Renderable, frame: Optional[float] = None) -> _relief.Scene:
+    """Of a Scene, a Mesh, a scene file, or a mesh file; at a frame, where values have keys. None: the first."""
+    if isinstance(scene, Mesh):
+        scene = Scene.from_mesh(scene)
     if isinstance(scene, Scene):
         return scene._parse(frame)
-    path = os.fspath(scene)
+    path = as_path(scene, "scene", "a Scene, a Mesh, or the name of a file")
     return Scene.from_mesh(path)._parse(frame) if _relief.is_mesh_file(path) else _relief.load_scene(path, frame)

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "arrays.h"
+#include "exit_gate.h"
+#include "relief/error.h"
 
 namespace nb = nanobind;
 
@@ -15,10 +18,37 @@ namespace relief::python {
 
 namespace {
 
-template <class Element, class Array>
-std::vector<Element> get_array(const nb::dict& arrays, const char* name) {
-    if (!arrays.contains(name)) return {};
-    return copy_array<Element>(nb::cast<Array>(arrays[name]));
+/// Read with the GIL, copied without.
+struct GivenArrays {
+    template <class Array> static std::optional<Array> find(const nb::dict& arrays, const char* name) {
+        if (!arrays.contains(name)) return std::nullopt;
+        return nb::cast<Array>(arrays[name]);
+    }
+    explicit GivenArrays(const nb::dict& arrays)
+        : positions(find<Array2<float>>(arrays, "positions")),
+          sizes(find<Array1<uint32_t>>(arrays, "sizes")),
+          corners(find<Array1<uint32_t>>(arrays, "corners")),
+          uvs(find<Array2<float>>(arrays, "uvs")),
+          uv_indices(find<Array1<uint32_t>>(arrays, "uv_indices")),
+          normals(find<Array2<float>>(arrays, "normals")),
+          normal_indices(find<Array1<uint32_t>>(arrays, "normal_indices")),
+          tangents(find<Array2<float>>(arrays, "tangents")),
+          creases(find<Array2<uint32_t>>(arrays, "creases")),
+          sharpness(find<Array1<float>>(arrays, "sharpness")) {}
+
+    std::optional<Array2<float>> positions;
+    std::optional<Array1<uint32_t>> sizes, corners;
+    std::optional<Array2<float>> uvs;
+    std::optional<Array1<uint32_t>> uv_indices;
+    std::optional<Array2<float>> normals;
+    std::optional<Array1<uint32_t>> normal_indices;
+    std::optional<Array2<float>> tangents;
+    std::optional<Array2<uint32_t>> creases;
+    std::optional<Array1<float>> sharpness;
+};
+
+template <class Element, class Array> std::vector<Element> copy(const std::optional<Array>& array) {
+    return array ? copy_array<Element>(*array) : std::vector<Element>();
 }
 
 /// One uv a corner to uvs with indices. Only those of one position are compared, so that islands which happen
@@ -27,6 +57,9 @@ void weld_uvs(std::span<const Vec2f> corner_uvs, Mesh& mesh) {
     std::vector<uint32_t> newest(mesh.positions.size(), kNoIndex), older;
     mesh.uv_indices.resize(corner_uvs.size());
     for (size_t corner = 0; corner < corner_uvs.size(); ++corner) {
+        // Python has checked them, but another of its threads may have written to the array since.
+        if (mesh.position_indices.at(corner) >= newest.size())
+            throw Error(ErrorKind::bad_input, {"an index is out of range", "faces", ""});
         uint32_t& head = newest[mesh.position_indices[corner]];
         uint32_t found = head;
         while (found != kNoIndex && !(mesh.uvs[found] == corner_uvs[corner])) found = older[found];
@@ -49,23 +82,26 @@ std::vector<uint32_t> count_up(size_t count) {
 } // namespace
 
 Mesh make_mesh(const nb::dict& arrays) {
+    const GivenArrays given(arrays);
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
     Mesh mesh;
-    mesh.positions = get_array<Vec3f, Array2<float>>(arrays, "positions");
-    mesh.face_sizes = get_array<uint32_t, Array1<uint32_t>>(arrays, "sizes");
-    mesh.position_indices = get_array<uint32_t, Array1<uint32_t>>(arrays, "corners");
-    std::vector<Vec2f> uvs = get_array<Vec2f, Array2<float>>(arrays, "uvs");
-    mesh.uv_indices = get_array<uint32_t, Array1<uint32_t>>(arrays, "uv_indices");
+    mesh.positions = copy<Vec3f>(given.positions);
+    mesh.face_sizes = copy<uint32_t>(given.sizes);
+    mesh.position_indices = copy<uint32_t>(given.corners);
+    std::vector<Vec2f> uvs = copy<Vec2f>(given.uvs);
+    mesh.uv_indices = copy<uint32_t>(given.uv_indices);
     if (!uvs.empty() && mesh.uv_indices.empty())
         weld_uvs(uvs, mesh);
     else
         mesh.uvs = std::move(uvs);
-    mesh.normals = get_array<Vec3f, Array2<float>>(arrays, "normals");
-    mesh.normal_indices = get_array<uint32_t, Array1<uint32_t>>(arrays, "normal_indices");
+    mesh.normals = copy<Vec3f>(given.normals);
+    mesh.normal_indices = copy<uint32_t>(given.normal_indices);
     if (!mesh.normals.empty() && mesh.normal_indices.empty())
         mesh.normal_indices = count_up(mesh.normals.size());
-    mesh.tangents = get_array<std::array<float, 4>, Array2<float>>(arrays, "tangents");
-    const auto edges = get_array<std::array<uint32_t, 2>, Array2<uint32_t>>(arrays, "creases");
-    const auto sharpness = get_array<float, Array1<float>>(arrays, "sharpness");
+    mesh.tangents = copy<std::array<float, 4>>(given.tangents);
+    const auto edges = copy<std::array<uint32_t, 2>>(given.creases);
+    const auto sharpness = copy<float>(given.sharpness);
     for (size_t k = 0; k < std::min(edges.size(), sharpness.size()); ++k)
         mesh.creases.push_back({edges[k][0], edges[k][1], sharpness[k]});
     return mesh;

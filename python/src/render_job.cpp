@@ -124,6 +124,8 @@ class Waiter {
             if (is_gate_closing()) mailbox_.cancel();
             handle([&] { check_signals(); });
             if (failure_.is_valid() || interrupts_ > 0) continue;
+            has_begun_ |= news.progress || news.picture || news.is_done;
+            if (!has_begun_ && ++looks_ % kLooksACall == 0) news.progress = callbacks_.at_start;
             if (news.progress) call(callbacks_.on_progress, [&] { return nb::cast(*news.progress); });
             if (news.picture)
                 call(callbacks_.on_picture, [&] { return make_picture(std::move(*news.picture)); });
@@ -137,6 +139,8 @@ class Waiter {
     }
 
   private:
+    static constexpr int kLooksACall = 4; ///< of on_progress while the scene is prepared
+
     template <class Body> void handle(const Body& body) {
         try {
             body();
@@ -161,7 +165,8 @@ class Waiter {
 
     Mailbox& mailbox_;
     const RenderCallbacks& callbacks_;
-    int interrupts_ = 0;
+    int interrupts_ = 0, looks_ = 0;
+    bool has_begun_ = false;
     nb::object interrupt_, failure_;
 };
 

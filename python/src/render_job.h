@@ -11,9 +11,12 @@
 namespace relief::python {
 
 struct RenderCallbacks {
-    nanobind::object on_progress; ///< called with a Progress; returning False stops the render. May be None
-    nanobind::object on_picture;  ///< called with an Image; the same
+    /// Called with a Progress, several times a second from the start on; returning False stops the render.
+    /// May be None.
+    nanobind::object on_progress;
+    nanobind::object on_picture; ///< called with an Image; the same
     double picture_interval_s = 0.5;
+    Progress at_start{}; ///< while there are no rays yet
 };
 
 struct JobReport {

@@ -1,8 +1,10 @@
 // Pictures of scenes, at once or one after the other while maps are painted.
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -13,6 +15,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "base/stop_request.h"
 #include "cli/statistics_report.h"
 #include "common/report.h"
 #include "exit_gate.h"
@@ -25,6 +28,7 @@
 #include "scenes.h"
 #include "settings.h"
 #include "textures.h"
+#include "values.h"
 
 namespace nb = nanobind;
 
@@ -58,21 +62,50 @@ std::shared_ptr<const Denoiser> load_denoiser(const std::vector<std::string>& li
     return std::make_shared<const Denoiser>(denoiser);
 }
 
+/// Null where the observer cancels meanwhile. The scene is used up.
+std::unique_ptr<Session> make_session(Scene&& scene, const RenderSettings& settings,
+                                      const RenderObserver& observer) {
+    const StopScope scope([&observer] { return observer.is_cancelled(); });
+    try {
+        return std::make_unique<Session>(std::move(scene), settings, SessionUse::scenes);
+    } catch (const StopRequest&) {
+        return nullptr;
+    }
+}
+
 /// With motion blur where the scene moves. The scene is used up.
 RenderResult render_parsed(ParsedScene& parsed, const RenderSettings& settings, RenderObserver& observer) {
     if (!parsed.shot) return render(std::move(parsed.scene), settings, &observer);
-    Session session(std::move(parsed.scene), settings, SessionUse::scenes);
+    const auto session = make_session(std::move(parsed.scene), settings, observer);
+    if (!session) {
+        RenderResult stopped;
+        stopped.is_complete = false;
+        return stopped;
+    }
     const auto update = [&parsed](double frame) { return parsed.shot->update(frame); };
-    return session.render_moving(parsed.frame, update, &observer);
+    return session->render_moving(parsed.frame, update, &observer);
+}
+
+RenderCallbacks make_callbacks(nb::object&& on_progress, nb::object&& on_picture, double picture_interval_s,
+                               const RenderSettings& settings) {
+    RenderCallbacks callbacks{std::move(on_progress), std::move(on_picture), picture_interval_s};
+    callbacks.at_start.samples_total = settings.image.spp;
+    return callbacks;
 }
 
 /// The scene is used up.
-nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, const RenderCallbacks& callbacks,
-                        bool is_denoised, const std::vector<std::string>& denoisers) {
+nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, nb::object on_progress,
+                        nb::object on_picture, double picture_interval_s, bool is_checked, bool is_denoised,
+                        const std::vector<std::string>& denoisers) {
     RenderSettings settings = read_settings(keywords, parsed.scene.picture);
+    const RenderCallbacks callbacks =
+        make_callbacks(std::move(on_progress), std::move(on_picture), picture_interval_s, settings);
     const GateVisit visit;
     const auto denoiser = load_denoiser(denoisers, is_denoised, settings);
-    const auto work = [&parsed, &settings, denoiser](RenderObserver& observer) {
+    const auto work = [&parsed, &settings, denoiser, is_checked](RenderObserver& observer) {
+        if (is_checked)
+            for (std::string& warning : find_doubts(parsed.scene))
+                parsed.scene.warnings.push_back(std::move(warning));
         RenderResult result = render_parsed(parsed, settings, observer);
         if (!denoiser || result.whole_samples == 0) return result;
         const auto start = std::chrono::steady_clock::now();
@@ -103,17 +136,23 @@ class PaintSession {
         session_ = std::make_unique<Session>(std::move(parsed.scene), settings_);
     }
 
-    nb::object render(const RenderCallbacks& callbacks) {
+    nb::object render(nb::object on_progress, nb::object on_picture, double picture_interval_s) {
         const auto lock = enter();
+        const RenderCallbacks callbacks =
+            make_callbacks(std::move(on_progress), std::move(on_picture), picture_interval_s, settings_);
         const GateVisit visit;
         return make_answer(
             run_job([&](RenderObserver& observer) { return session_->render(&observer); }, callbacks),
             settings_);
     }
 
-    nb::object edit(const std::string& displacement, nb::handle texels, uint32_t x, uint32_t y, int udim) {
+    nb::object edit(nb::handle displacement, nb::handle texels, nb::handle x, nb::handle y, nb::handle udim) {
         const auto lock = enter();
-        const MapEdit edit{displacement, udim, x, y, make_texture(texels, "texels")};
+        constexpr int64_t kMostTexels = std::numeric_limits<uint32_t>::max();
+        const MapEdit edit{
+            Argument("displacement", displacement).text(), int(Argument("udim", udim).integer(1001, 9999)),
+            uint32_t(Argument("x", x).integer(0, kMostTexels)),
+            uint32_t(Argument("y", y).integer(0, kMostTexels)), make_texture(texels, "texels")};
         EditReport report;
         {
             const GateVisit visit;
@@ -161,25 +200,13 @@ void add_renders(nb::module_& module) {
         .def_ro("samples_total", &Progress::samples_total, "of every pixel")
         .def_ro("rays", &Progress::rays, "traced so far")
         .def_ro("elapsed_s", &Progress::elapsed_s, "seconds since the first ray");
-    module.def(
-        "render",
-        [](ParsedScene& scene, const nb::dict& keywords, nb::object on_progress, nb::object on_picture,
-           double picture_interval, bool is_denoised, const std::vector<std::string>& denoisers) {
-            return render_scene(scene, keywords,
-                                {std::move(on_progress), std::move(on_picture), picture_interval},
-                                is_denoised, denoisers);
-        },
-        nb::arg("scene"), nb::arg("keywords"), nb::arg("on_progress").none(), nb::arg("on_picture").none(),
-        nb::arg("picture_interval"), nb::arg("is_denoised"), nb::arg("denoisers"));
+    module.def("render", &render_scene, nb::arg("scene"), nb::arg("keywords"), nb::arg("on_progress").none(),
+               nb::arg("on_picture").none(), nb::arg("picture_interval"), nb::arg("is_checked"),
+               nb::arg("is_denoised"), nb::arg("denoisers"));
     nb::class_<PaintSession>(module, "Session", "A scene that stays prepared while its maps are edited.")
         .def(nb::init<ParsedScene&, const nb::dict&>(), nb::arg("scene"), nb::arg("keywords"))
-        .def(
-            "render",
-            [](PaintSession& session, nb::object on_progress, nb::object on_picture,
-               double picture_interval) {
-                return session.render({std::move(on_progress), std::move(on_picture), picture_interval});
-            },
-            nb::arg("on_progress").none(), nb::arg("on_picture").none(), nb::arg("picture_interval"))
+        .def("render", &PaintSession::render, nb::arg("on_progress").none(), nb::arg("on_picture").none(),
+             nb::arg("picture_interval"))
         .def("change_view", &PaintSession::change_view, nb::arg("scene").none(), nb::arg("keywords"))
         .def("edit", &PaintSession::edit, nb::arg("displacement"), nb::arg("texels"), nb::arg("x"),
              nb::arg("y"), nb::arg("udim"));

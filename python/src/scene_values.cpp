@@ -57,7 +57,7 @@ void read_option(const std::string& name, nb::handle given, AimOptions& aim) {
     } else if (name == "view") {
         aim.view = read_view(value);
     } else if (name == "frame_all") {
-        aim.frame_all = PyObject_IsTrue(given.ptr()) == 1;
+        aim.frame_all = value.truth();
     } else if (name == "env_rotate") {
         aim.rotate_degrees = float(value.number(-360, 360));
     } else if (name == "env_strength") {

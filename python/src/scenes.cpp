@@ -17,9 +17,11 @@
 #include "meshes.h"
 #include "parts.h"
 #include "relief/convert.h"
+#include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/shot.h"
 #include "scene_values.h"
+#include "settings.h"
 #include "textures.h"
 
 namespace nb = nanobind;
@@ -72,7 +74,8 @@ nb::dict describe_picture(const ParsedScene& parsed) {
 }
 
 /// Camera, environment, suns, and what the last object is made of: all that aiming and completing may change.
-nb::dict describe(const ParsedScene& parsed) {
+/// Its mesh where there are more than `known` objects.
+nb::dict describe(const ParsedScene& parsed, size_t known) {
     const Scene& scene = parsed.scene;
     nb::dict node;
     node["camera"] = describe_camera(scene.camera);
@@ -83,7 +86,7 @@ nb::dict describe(const ParsedScene& parsed) {
     const Object& last = scene.objects.back();
     nb::dict object;
     object["name"] = last.name;
-    object["mesh"] = make_mesh_arrays(Mesh(scene.meshes[last.mesh]));
+    if (scene.objects.size() > known) object["mesh"] = make_mesh_arrays(Mesh(scene.meshes[last.mesh]));
     if (last.material != kNoIndex) object["material"] = describe_material(scene.materials[last.material]);
     object["shadow_catcher"] = last.is_shadow_catcher;
     node["last_object"] = object;
@@ -138,19 +141,39 @@ void write_mesh_arrays(const nb::dict& arrays, const std::string& file) {
     write_mesh(mesh, file);
 }
 
+/// In the words of keywords and keys.
+std::vector<std::string> list_warnings(const ParsedScene& parsed) {
+    std::vector<std::string> warnings;
+    {
+        const GateVisit visit;
+        const nb::gil_scoped_release release;
+        warnings = parsed.scene.warnings;
+        for (std::string& doubt : find_doubts(parsed.scene)) warnings.push_back(std::move(doubt));
+    }
+    for (std::string& warning : warnings) warning = name_keywords(std::move(warning));
+    return warnings;
+}
+
 } // namespace
+
+std::vector<std::string> find_doubts(const Scene& scene) {
+    std::vector<std::string> doubts;
+    for (Finding& finding : find_doubtful_assumptions(scene))
+        doubts.push_back((finding.severity == Severity::note ? "note: " : "") + std::move(finding.text));
+    return doubts;
+}
 
 void add_scenes(nb::module_& module) {
     nb::class_<ParsedScene>(module, "Scene",
                             "A scene that was read whole: from a file, or from text and arrays.")
         .def("aim", &aim, nb::arg("keywords"), nb::arg("aspect"))
         .def("complete", &complete)
-        .def("describe", &describe)
+        .def("describe", &describe, nb::arg("known"))
         .def("displace", &displace, nb::arg("level"))
         .def("save", &save, nb::arg("folder"))
         .def_prop_ro("picture", &describe_picture)
         .def_prop_ro("hash", [](const ParsedScene& p) { return p.scene.hash; })
-        .def_prop_ro("warnings", [](const ParsedScene& p) { return p.scene.warnings; });
+        .def_prop_ro("warnings", &list_warnings);
     module.def("parse_scene", &parse, nb::arg("text"), nb::arg("folder"), nb::arg("meshes"),
                nb::arg("textures"), nb::arg("frame").none());
     module.def("load_scene", &load, nb::arg("file"), nb::arg("frame") = nb::none());

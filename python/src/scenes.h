@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <nanobind/nanobind.h>
 
@@ -17,5 +19,8 @@ struct ParsedScene {
     std::unique_ptr<Shot> shot;
     double frame = 1;
 };
+
+/// What speaks against what was said or assumed of the maps of a scene.
+std::vector<std::string> find_doubts(const Scene& scene);
 
 } // namespace relief::python

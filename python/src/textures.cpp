@@ -10,6 +10,7 @@
 
 #include "arrays.h"
 #include "base/parallel.h"
+#include "exit_gate.h"
 #include "relief/error.h"
 #include "relief/half.h"
 
@@ -44,6 +45,8 @@ Texture make_texture(nb::handle array, const std::string& name) {
     constexpr uint16_t kHalfOne = 0x3c00;
     const nb::dlpack::dtype type = given.dtype();
     const void* const data = given.data();
+    const GateVisit visit;
+    const nb::gil_scoped_release release;
     if (type == nb::dtype<float>()) {
         texture.floats.resize(count);
         spread(static_cast<const float*>(data), channels, 1.0f, texture.floats, [](float x) { return x; });
@@ -70,10 +73,17 @@ nb::object make_texel_array(const Texture& texture) {
     const size_t channels = std::clamp<size_t>(texture.channel_count, 1, 4),
                  texels = size_t(texture.width) * texture.height;
     std::vector<float> values(texels * channels);
-    for (size_t k = 0; k < texels; ++k)
-        for (size_t c = 0; c < channels; ++c)
-            values[channels * k + c] =
-                texture.floats.empty() ? half_to_float(texture.halves[4 * k + c]) : texture.floats[4 * k + c];
+    {
+        const GateVisit visit;
+        const nb::gil_scoped_release release;
+        parallel_for("gather_texels", texels, kGrain, [&](size_t begin, size_t end) {
+            for (size_t k = begin; k < end; ++k)
+                for (size_t c = 0; c < channels; ++c)
+                    values[channels * k + c] = texture.floats.empty()
+                                                   ? half_to_float(texture.halves[4 * k + c])
+                                                   : texture.floats[4 * k + c];
+        });
+    }
     return make_array<float>(std::move(values), {texture.height, texture.width, channels});
 }
 

@@ -117,7 +117,7 @@ MapOptions read_map_options(const nb::dict& keys) {
         const float all = is_one ? float(get(key).number(-1e9, 1e9)) : 0;
         *value = is_one ? Vec3f{all, all, all} : get(key).vector("a number, or three");
     }
-    if (keys.contains("flip_v")) options.flip_v = PyObject_IsTrue(keys["flip_v"].ptr()) == 1;
+    if (keys.contains("flip_v")) options.flip_v = get("flip_v").truth();
     return options;
 }
 

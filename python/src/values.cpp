@@ -48,6 +48,13 @@ double Argument::number(double low, double high) const {
     return number;
 }
 
+bool Argument::truth() const {
+    const int truth = PyObject_IsTrue(value_.ptr());
+    if (truth >= 0) return truth == 1;
+    PyErr_Clear();
+    refuse("True or False");
+}
+
 std::string Argument::text() const {
     if (!is_text()) refuse("a string");
     return nb::cast<std::string>(value_);

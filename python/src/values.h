@@ -25,6 +25,8 @@ class Argument {
     int64_t integer(int64_t low, int64_t high) const;
     /// Finite, in [low, high].
     double number(double low, double high) const;
+    /// What Python holds to be true or false.
+    bool truth() const;
     bool is_text() const { return PyUnicode_Check(value_.ptr()); }
     std::string text() const;
     /// A string or an os.PathLike.

@@ -143,6 +143,50 @@ class RenderTest(unittest.TestCase):
         with self.assertRaisesRegex(relief.Error, "stopped before"):
             relief.render(self.scene, size=(8000, 8000), spp=1, progress=lambda progress: False)
 
+    def test_a_render_can_be_stopped_while_its_scene_is_prepared(self):
+        steps = np.linspace(-1, 1, 501)
+        points = np.stack([*np.meshgrid(steps, steps), np.zeros((501, 501))], -1).reshape(-1, 3)
+        first = (np.arange(500)[:, None] * 501 + np.arange(500)).reshape(-1, 1)
+        mesh = relief.Mesh(points, first + [0, 1, 502, 501], uvs=points[:, :2] / 2 + 0.5, uv_indices=first + [0, 1, 502, 501])
+        scene, told = relief.Scene.from_mesh(mesh, scenes.make_waves()), []
+
+        def stop(progress):
+            told.append((progress.rays, progress.samples_done, progress.samples_total))
+            return False
+
+        with self.assertRaisesRegex(relief.Error, "stopped before"):
+            relief.render(scene, spp=3, progress=stop, on_picture=lambda picture: self.fail("it went on"))
+        self.assertEqual(told[0], (0, 0, 3))
+        with self.assertRaisesRegex(ZeroDivisionError, "division"):
+            relief.render(scene, spp=3, progress=lambda progress: 1 / progress.rays)
+
+    def test_what_speaks_against_the_axes_of_a_map_is_a_warning(self):
+        heights = np.abs(scenes.make_waves()[:, :, ::-1])  # along t, as the values go, and not along n
+        for keys, words in (({}, "axes t,b,n are assumed"), ({"axes": "t,b,n"}, "note: .*axes t,b,n are declared")):
+            scene = relief.Scene.from_mesh(scenes.make_plane(), relief.Displacement(heights, space="tangent", midlevel=0, **keys))
+            warnings = relief.render(scene, size=(8, 8), spp=1).warnings
+            self.assertEqual(warnings, scene.validate())
+            self.assertRegex(" ".join(warnings), words)
+            self.assertEqual(relief.render(scene, size=(8, 8), spp=1, check_maps=False).warnings, [])
+
+    def test_meshes_render_as_they_are(self):
+        mesh = scenes.make_plane()
+        np.testing.assert_array_equal(relief.render(mesh, size=(8, 8), spp=1).array,
+                                      relief.render(relief.Scene.from_mesh(mesh), size=(8, 8), spp=1).array)
+        with self.assertRaisesRegex(TypeError, r"scene: a Scene, a Mesh, or the name of a file is needed, not float64 \(3,\)"):
+            relief.render(np.zeros(3))
+
+    def test_metadata_stays_as_it_is_while_a_file_is_written(self):
+        picture, seen = relief.render(self.scene, size=(256, 256), spp=1), set()
+        with tempfile.TemporaryDirectory() as folder:
+            writers = [threading.Thread(target=lambda k=k: [picture.save(f"{folder}/{k}.png") for _ in range(10)]) for k in range(2)]
+            for writer in writers:
+                writer.start()
+            while any(writer.is_alive() for writer in writers):
+                seen |= picture.metadata.keys()
+        self.assertIn("relief:seed", seen)
+        self.assertNotIn("relief:display", seen)
+
     def test_exceptions_of_callbacks_come_out_with_the_picture(self):
         def fail(picture):
             raise ZeroDivisionError("mine")
@@ -221,6 +265,11 @@ class SessionTest(unittest.TestCase):
         for error, keys in ((relief.Error, dict(displacement="no", texels=np.zeros((2, 2, 3), np.float32))),
                             (relief.Error, dict(displacement="displacement", texels=np.zeros((2, 2, 3), np.float32), x=63)),
                             (relief.Error, dict(displacement="displacement", texels=np.full((2, 2, 3), np.nan, np.float32))),
+                            (relief.Error, dict(displacement="displacement", texels=np.zeros((2, 2), np.float32))),
+                            (relief.Error, dict(displacement="displacement", texels=np.zeros((2, 2, 3), np.float32), x=-5)),
+                            (relief.Error, dict(displacement="displacement", texels=np.zeros((2, 2, 3), np.float32), y=1.5)),
+                            (relief.Error, dict(displacement="displacement", texels=np.zeros((2, 2, 3), np.float32), udim=3)),
+                            (relief.Error, dict(displacement=5, texels=np.zeros((2, 2, 3), np.float32))),
                             (ValueError, dict(displacement="displacement", texels=np.zeros((2, 2, 7), np.float32))),
                             (TypeError, dict(displacement="displacement", texels=np.zeros((2, 2), bool)))):
             with self.assertRaises(error):
@@ -233,8 +282,10 @@ class SessionTest(unittest.TestCase):
 class EndTest(unittest.TestCase):
     """Python ends while threads render or trace: no crash, no deadlock."""
 
-    def run_script(self, body: str, signals: bool = False) -> subprocess.CompletedProcess:
-        script = "import threading, time, sys\nimport numpy as np\nimport relief, scenes\n" + textwrap.dedent(body)
+    def run_script(self, body: str, before: str = "") -> subprocess.CompletedProcess:
+        """before: what is run before the module is imported."""
+        script = "import threading, time, sys\n" + textwrap.dedent(before) + \
+            "import numpy as np\nimport relief, scenes\n" + textwrap.dedent(body)
         environment = dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path))
         return subprocess.run([sys.executable, "-X", "faulthandler", "-c", script], capture_output=True, text=True,
                               timeout=240, cwd=os.path.dirname(os.path.abspath(__file__)), env=environment)
@@ -252,6 +303,54 @@ class EndTest(unittest.TestCase):
                 time.sleep({wait})
                 """)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_during_a_call_within_a_callback_of_a_daemon_thread(self):
+        done = self.run_script("""
+            scene, small, started = scenes.make_scene(), scenes.make_scene(), threading.Event()
+            def trace(picture):
+                started.set()
+                while True:
+                    relief.render(small, size=(64, 64), spp=64)
+            threading.Thread(target=lambda: relief.render(scene, spp=100000, on_picture=trace), daemon=True).start()
+            started.wait()
+            """)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_calls_after_the_end_neither_crash_nor_print(self):
+        done = self.run_script("""
+            scene = scenes.make_scene()
+            def work():
+                go.wait()
+                relief.render(scene)
+                print("rendered")
+            threading.Thread(target=work, daemon=True).start()
+            """, before="""
+            import atexit
+            go = threading.Event()
+            def end():
+                go.set()
+                time.sleep(0.5)
+                try:
+                    relief.render(scene)
+                except relief.Error as error:
+                    print(error)
+            atexit.register(end)
+            """)
+        self.assertEqual((done.returncode, done.stdout.strip(), done.stderr), (0, "Python is ending", ""))
+
+    def test_of_a_child_process_that_was_forked_during_a_render(self):
+        done = self.run_script("""
+            import os
+            scene, started = scenes.make_scene(), threading.Event()
+            threading.Thread(target=lambda: relief.render(scene, size=(320, 240), spp=100000,
+                                                          on_picture=lambda picture: started.set()), daemon=True).start()
+            started.wait()
+            child = os.fork()
+            if child == 0:
+                sys.exit(7)
+            print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+            """)
+        self.assertEqual((done.returncode, done.stdout.strip(), done.stderr), (0, "7", ""))
 
     def test_during_rays_in_daemon_threads(self):
         done = self.run_script("""

@@ -106,6 +106,15 @@ class SceneTest(unittest.TestCase):
         self.assertEqual(caught.exception.kind, "bad_input")
         self.assertIn("2", caught.exception.where)
 
+    def test_files_of_other_types_and_versions_are_errors(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "scene.json"
+            for root in ([], 5, {"version": 2}, {"version": "1"}, {"version": 1, "materials": []}, {"version": 1, "objects": {}},
+                         {"version": 1, "camera": 5}, {"version": 1, "meshes": {"a": "b.obj"}}, {"version": 1, "lights": [5]}):
+                file.write_text(json.dumps(root))
+                with self.assertRaises(relief.Error, msg=str(root)):
+                    relief.Scene.load(file)
+
     def test_unknown_keys_are_refused_with_a_suggestion(self):
         scene = scenes.make_scene()
         scene.materials["clay"]["specular_roughnes"] = 0.1
@@ -165,6 +174,8 @@ class SceneTest(unittest.TestCase):
         self.render(scene, background="transparent")
         scene.aim(from_=(1, 2, 3), fov=50)
         self.assertEqual((scene.camera["from"], scene.camera["fov_degrees"]), ([1, 2, 3], 50))
+        with self.assertRaisesRegex(relief.Error, "frame_all.*True or False"):
+            scene.aim(frame_all=np.zeros(2))
         scene.aim(zoom=2)
         self.assertAlmostEqual(np.tan(np.radians(scene.camera["fov_degrees"] / 2)), np.tan(np.radians(25)) / 2, 5)
 
@@ -259,7 +270,13 @@ class MeshTest(unittest.TestCase):
                 (ValueError, "uv_indices: there are no uvs", lambda: relief.Mesh(points, quad, None, [[0, 1, 2, 3]])),
                 (ValueError, r"normals: the shape is \(4, 2\)", lambda: relief.Mesh(points, quad, normals=np.zeros((4, 2)))),
                 (ValueError, r"tangents: the shape is \(4, 3\)", lambda: relief.Mesh(points, quad, tangents=np.zeros((4, 3)))),
-                (ValueError, "creases: index 7", lambda: relief.Mesh(points, quad, creases=[[0, 7, 1]]))):
+                (ValueError, "creases: index 7", lambda: relief.Mesh(points, quad, creases=[[0, 7, 1]])),
+                (ValueError, "creases: .*whole numbers", lambda: relief.Mesh(points, quad, creases=[[0, 1.5, 1]])),
+                (ValueError, "sharpness of creases: NaN", lambda: relief.Mesh(points, quad, creases=[[0, 1, np.nan]])),
+                (ValueError, r"displacement: the shape is \(8,\)", lambda: relief.Scene.from_mesh(scenes.make_plane(), np.zeros(8))),
+                (TypeError, "displacement: a Displacement, .*, not int", lambda: relief.Scene.from_mesh(scenes.make_plane(), 5)),
+                (TypeError, "mesh: a Mesh, .*, not Scene", lambda: relief.Scene.from_mesh(scenes.make_scene())),
+                (relief.Error, "preset: ", lambda: relief.Scene.from_mesh(scenes.make_plane(), preset="zbrush"))):
             with self.assertRaisesRegex(error, words):
                 make()
 
@@ -269,6 +286,18 @@ class MeshTest(unittest.TestCase):
         mesh.corners = np.array([0, 1, 2, 9], np.uint32)
         with self.assertRaisesRegex(ValueError, "index 9"):
             relief.render(scene)
+        mesh = scenes.make_plane(creases=[[0, 1, 3]])
+        mesh.creases = np.array([[0, 9]], np.int32)
+        with self.assertRaisesRegex(ValueError, "creases: index 9"):
+            relief.render(mesh)
+
+    def test_a_preset_says_what_a_map_of_a_program_means(self):
+        scene = relief.Scene.from_mesh(scenes.make_plane(), scenes.make_waves(), preset="blender-brush")
+        self.assertEqual(scene.displacements["displacement"]["preset"], "blender-brush")
+        self.assertEqual(scene.validate(), relief.Scene.from_mesh(
+            scenes.make_plane(), relief.Displacement(scenes.make_waves(), preset="blender-brush")).validate())
+        with self.assertRaisesRegex(relief.Error, "unknown preset 'mudbocks'"):
+            relief.Scene.from_mesh(scenes.make_plane(), scenes.make_waves(), preset="mudbocks")
 
     def test_other_orders_and_read_only_memory_are_taken(self):
         points = np.asfortranarray(np.array(scenes.make_plane().positions))
