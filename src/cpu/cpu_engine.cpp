@@ -10,13 +10,13 @@
 
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "base/stop_request.h"
 #include "cpu/patch_trees/patch_tree_cache.h"
 #include "cpu/path_tracer.h"
 #include "cpu/picture_footprints.h"
 #include "cpu/tracer.h"
 #include "engine/picture_windows.h"
 #include "engine/render_passes.h"
-#include "base/stop_request.h"
 
 namespace relief {
 

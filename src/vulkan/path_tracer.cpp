@@ -5,8 +5,8 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "base/timer.h"
 #include "base/stop_request.h"
+#include "base/timer.h"
 #include "formulas/light_layers.h"
 #include "formulas/path.h"
 #include "formulas/pixel_order.h"

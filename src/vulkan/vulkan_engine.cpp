@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
+#include "base/stop_request.h"
 #include "base/timer.h"
 #include "engine/picture_windows.h"
 #include "engine/render_passes.h"
-#include "base/stop_request.h"
 #include "relief/error.h"
 #include "vulkan/layout/device_rays.h"
 #include "vulkan/path_tracer.h"

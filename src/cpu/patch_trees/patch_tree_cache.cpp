@@ -8,8 +8,8 @@
 
 #include "base/check.h"
 #include "base/machine.h"
-#include "base/timer.h"
 #include "base/stop_request.h"
+#include "base/timer.h"
 
 namespace relief::cpu {
 
