@@ -54,7 +54,7 @@ class RenderJob:
         return self._is_cancelled.is_set()
 
     def cancel(self):
-        """Asks for the end, which is done or fault. It comes soon while there are samples, after preparation before."""
+        """Asks for the end, which is done or fault; it comes soon, or after the step that a preparation is at."""
         self._is_cancelled.set()
 
     def leave(self):

@@ -37,6 +37,7 @@ def make_settings(scene, view, factor):
     return {"size": view.size, "crop": view.crop, "spp": 1 if factor > 1 else own.viewport_samples,
             "bounces": own.viewport_bounces, "pixel_error": own.viewport_pixel_error, "seed": own.seed,
             "engine": own.engine, "threads": find_threads(scene.render), "clamp_indirect": own.clamp_indirect,
+            "check_maps": False,
             "background": "transparent" if scene.render.film_transparent else None}
 
 
