@@ -4,10 +4,12 @@
 #include "formulas/lang.h"
 #elif defined(RELIEF_LANES)
 #define FN HWY_INLINE
+#define In(Type) const Type&
 #define EXACT
 #else
 #include "formulas/scalar.h"
 namespace relief::scalar {
 #define FN inline
+#define In(Type) const Type&
 #define EXACT
 #endif

@@ -1,9 +1,10 @@
 // Common dialect of GLSL 4.60 and C++20 (docs/decisions/one-source-formulas.md). GLSL's names; C++ defines
-// them elsewhere: FN EXACT Float Bool Uint Vec2 Vec3 select is_any copy_sign is_finite make_unit.
+// them elsewhere: FN In EXACT Float Bool Uint Vec2 Vec3 select is_any copy_sign is_finite make_unit.
 #ifndef __cplusplus
 #ifndef RELIEF_LANG_H
 #define RELIEF_LANG_H
 #define FN
+#define In(Type) Type
 #define EXACT precise
 #define Float float
 #define Bool bool

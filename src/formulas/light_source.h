@@ -58,31 +58,31 @@ struct LightSeen {
 FN bool is_in_set(uint word, uint instance) { return ((word >> (instance & 31u)) & 1u) != 0u; }
 
 /// Of a flat light; of the disc that a sphere looks like.
-FN float shape_area(LightSourceData source) {
+FN float shape_area(In(LightSourceData) source) {
     float rectangle = 4.0f * source.half_width * source.half_height;
     return source.kind == kSourceRectangle ? rectangle : kPi * source.radius * source.radius;
 }
 
-FN bool is_flat(LightSourceData source) {
+FN bool is_flat(In(LightSourceData) source) {
     return source.kind == kSourceRectangle || source.kind == kSourceDisk;
 }
 
 /// Part of its strength that a spot sends at an angle of 1 - cos = `height` to its axis.
-FN float spot_falloff(LightSourceData source, float height) {
+FN float spot_falloff(In(LightSourceData) source, float height) {
     float x = clamp((source.cone - height) / max(source.cone - source.edge, 1e-30f), 0.0f, 1.0f);
     return x * x * (3.0f - 2.0f * x);
 }
 
 /// Of light that travels against `direction`, the way in which the light is seen; 1 for other lights. All
 /// points of a spot's sphere shine alike.
-FN float direction_falloff(LightSourceData source, Vec3 direction) {
+FN float direction_falloff(In(LightSourceData) source, Vec3 direction) {
     // 1 - cos from the chord between the unit vectors, exact for small angles.
     Vec3 chord = direction + source.basis.n;
     return source.kind == kSourceSpot ? spot_falloff(source, 0.5f * dot(chord, chord)) : 1.0f;
 }
 
 /// The largest falloff over the sphere of a spot, whose centre is at `to`.
-FN float largest_falloff(LightSourceData source, Vec3 to) {
+FN float largest_falloff(In(LightSourceData) source, Vec3 to) {
     float distance = max(length(to), 1e-30f);
     Vec3 direction = to / distance;
     if (source.radius == 0.0f) return direction_falloff(source, direction);
@@ -96,7 +96,7 @@ FN float largest_falloff(LightSourceData source, Vec3 to) {
 }
 
 /// A point of a flat light, relative to its centre, nearest to a place given in its basis.
-FN Vec3 nearest_on_light(LightSourceData source, Vec3 place) {
+FN Vec3 nearest_on_light(In(LightSourceData) source, Vec3 place) {
     float across = sqrt(place.x * place.x + place.y * place.y);
     float shrink = min(1.0f, source.radius / max(across, 1e-30f));
     Vec3 on_disk = {place.x * shrink, place.y * shrink, 0.0f};
@@ -108,7 +108,7 @@ FN Vec3 nearest_on_light(LightSourceData source, Vec3 place) {
 /// Radiance times about the solid angle of a flat light: like one of its area all at its nearest point, and
 /// towards 2 pi where that is near. Rather too much, which costs samples, than far too little, which is
 /// noise.
-FN float estimate_flat_irradiance(LightSourceData source, Vec3 to) {
+FN float estimate_flat_irradiance(In(LightSourceData) source, Vec3 to) {
     Vec3 place = to_local(source.basis, to) * -1.0f;
     Vec3 away = place - nearest_on_light(source, place);
     float distance2 = dot(away, away);
@@ -116,7 +116,7 @@ FN float estimate_flat_irradiance(LightSourceData source, Vec3 to) {
     return source.power * max(cosine, 0.0f) / max(distance2 + source.radius2, 1e-30f);
 }
 
-FN float estimate_irradiance(LightSourceData source, Vec3 position) {
+FN float estimate_irradiance(In(LightSourceData) source, Vec3 position) {
     Vec3 to = source.center - position;
     if (is_flat(source)) return estimate_flat_irradiance(source, to);
     if (source.kind == kSourceSpot)
@@ -127,13 +127,13 @@ FN float estimate_irradiance(LightSourceData source, Vec3 position) {
 }
 
 /// Radiance of a light with extent: a sun's disc, a sphere, a disk or a rectangle; of a spot along its axis.
-FN Vec3 shape_radiance(LightSourceData source) {
+FN Vec3 shape_radiance(In(LightSourceData) source) {
     // A disc of half angle a has projected solid angle pi sin(a)^2; sin^2 = h (2 - h), h = 1 - cos.
     float measure = source.kind == kSourceSun ? kPi * source.cone * (2.0f - source.cone) : shape_area(source);
     return source.color * (source.strength / measure);
 }
 
-FN LightDraw draw_sun(LightSourceData source, Vec2 u) {
+FN LightDraw draw_sun(In(LightSourceData) source, Vec2 u) {
     LightDraw drawn = {source.basis.n, make_infinity(), source.color * source.strength, make_infinity()};
     if (source.cone == 0.0f) return drawn;
     drawn.pdf = cone_pdf(source.cone);
@@ -142,7 +142,7 @@ FN LightDraw draw_sun(LightSourceData source, Vec2 u) {
     return drawn;
 }
 
-FN LightDraw draw_point_light(LightSourceData source, Vec3 position, Vec2 u) {
+FN LightDraw draw_point_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
     Vec3 to = source.center - position;
     float distance = length(to);
     LightDraw drawn = {to, distance, to, 0.0f};
@@ -165,7 +165,7 @@ FN LightDraw draw_point_light(LightSourceData source, Vec3 position, Vec2 u) {
     return drawn;
 }
 
-FN LightDraw draw_spot_light(LightSourceData source, Vec3 position, Vec2 u) {
+FN LightDraw draw_spot_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
     LightDraw drawn = draw_point_light(source, position, u);
     drawn.weight = drawn.weight * direction_falloff(source, drawn.direction);
     return drawn;
@@ -182,7 +182,7 @@ FN float flat_density(float distance, float facing, float area) {
 }
 
 /// By area. Density 0 behind the light, which shines to one side.
-FN LightDraw draw_flat_light(LightSourceData source, Vec3 position, Vec2 u) {
+FN LightDraw draw_flat_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
     Vec2 round = square_to_disk(u);
     bool is_disk = source.kind == kSourceDisk;
     float x = is_disk ? round.x * source.radius : (2.0f * u.x - 1.0f) * source.half_width;
@@ -199,7 +199,7 @@ FN LightDraw draw_flat_light(LightSourceData source, Vec3 position, Vec2 u) {
 }
 
 /// Of a light of the scene's list: neither the environment nor emissive surfaces.
-FN LightDraw draw_listed_light(LightSourceData source, Vec3 position, Vec2 u) {
+FN LightDraw draw_listed_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
     if (source.kind == kSourceSun) return draw_sun(source, u);
     if (source.kind == kSourceSpot) return draw_spot_light(source, position, u);
     if (source.kind == kSourcePoint) return draw_point_light(source, position, u);
@@ -228,7 +228,7 @@ FN LightDraw draw_emitter(Vec3 emission, Vec3 to, float pdf) {
 
 /// Place in the texture of a flat light of `size` texels, in which a ray from `origin` meets its plane; no
 /// texel beyond the edge takes part.
-FN Vec2 find_face_uv(LightSourceData source, Vec3 origin, Vec3 direction, Vec2 size) {
+FN Vec2 find_face_uv(In(LightSourceData) source, Vec3 origin, Vec3 direction, Vec2 size) {
     Vec3 to = source.center - origin;
     float t = -dot(to, source.basis.n) / max(-dot(direction, source.basis.n), 1e-30f);
     Vec3 place = to_local(source.basis, direction * t - to);
@@ -240,7 +240,7 @@ FN Vec2 find_face_uv(LightSourceData source, Vec3 origin, Vec3 direction, Vec2 s
 }
 
 /// Flat light that a ray hits within `distance`.
-FN LightSeen meet_flat_light(LightSourceData source, Vec3 origin, Vec3 direction, float distance) {
+FN LightSeen meet_flat_light(In(LightSourceData) source, Vec3 origin, Vec3 direction, float distance) {
     Vec3 to = source.center - origin;
     float facing = -dot(direction, source.basis.n);
     float t = -dot(to, source.basis.n) / max(facing, 1e-30f);
@@ -256,7 +256,7 @@ FN LightSeen meet_flat_light(LightSourceData source, Vec3 origin, Vec3 direction
 }
 
 /// Light of the scene's list that a ray hits within `distance`.
-FN LightSeen meet_light(LightSourceData source, Vec3 origin, Vec3 direction, float distance) {
+FN LightSeen meet_light(In(LightSourceData) source, Vec3 origin, Vec3 direction, float distance) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
     LightSeen seen = {zero, 0.0f, 0.0f};
     if (source.kind == kSourceSun && source.cone > 0.0f && distance == make_infinity()) {
@@ -280,7 +280,7 @@ FN LightSeen meet_light(LightSourceData source, Vec3 origin, Vec3 direction, flo
 }
 
 /// What a camera ray sees of a light of the scene's list within `distance`.
-FN Vec3 see_light(LightSourceData source, Vec3 origin, Vec3 direction, float distance) {
+FN Vec3 see_light(In(LightSourceData) source, Vec3 origin, Vec3 direction, float distance) {
     LightSeen seen = meet_light(source, origin, direction, distance);
     return seen.radiance * (source.is_visible != 0u ? 1.0f : 0.0f);
 }

@@ -61,7 +61,7 @@ FN float bound_received(Vec3 normal, Vec3 direction, float cone_cosine, float co
 
 /// Bound of the part of their strength that lights below a node send against `direction`, in which a point
 /// sees the node's sphere as large as a cone; 0 where all of them are dark.
-FN float bound_sent(LightNodeData node, Vec3 direction, float cone_cosine, float cone_sine) {
+FN float bound_sent(In(LightNodeData) node, Vec3 direction, float cone_cosine, float cone_sine) {
     float cosine = -dot(node.axis, direction);
     float sine = length(cross(node.axis, direction));
     bool is_spread = cosine >= node.spread_cosine;
@@ -72,7 +72,7 @@ FN float bound_sent(LightNodeData node, Vec3 direction, float cone_cosine, float
 }
 
 /// About the irradiance at a point from the lights below an inner node, or from an emissive patch.
-FN float estimate_node(LightNodeData node, LitPoint at) {
+FN float estimate_node(In(LightNodeData) node, In(LitPoint) at) {
     Vec3 to = node.center - at.position;
     float distance = length(to);
     // About the mean over lights all over the sphere, from inside.
@@ -87,13 +87,13 @@ FN float estimate_node(LightNodeData node, LitPoint at) {
 }
 
 /// Whether the estimates of both children of an inner node say much more than its own.
-FN bool is_near(LightNodeData node, LitPoint at) {
+FN bool is_near(In(LightNodeData) node, In(LitPoint) at) {
     Vec3 to = node.center - at.position;
     return dot(to, to) < 4.0f * node.radius * node.radius;
 }
 
 /// The same of a leaf that is a light of the scene's list.
-FN float estimate_leaf(LightNodeData node, LightSourceData source, LitPoint at) {
+FN float estimate_leaf(In(LightNodeData) node, In(LightSourceData) source, In(LitPoint) at) {
     Vec3 to = node.center - at.position;
     float distance = length(to);
     float estimate = estimate_irradiance(source, at.position);
@@ -115,7 +115,7 @@ FN float stretch_random(float u, float low, float width) {
 }
 
 /// Whether a ray may come within `distance` to a light below the node.
-FN bool may_meet(LightNodeData node, Vec3 origin, Vec3 direction, float distance) {
+FN bool may_meet(In(LightNodeData) node, Vec3 origin, Vec3 direction, float distance) {
     Vec3 to = node.center - origin;
     float along = dot(to, direction);
     Vec3 across = to - direction * along;
