@@ -191,8 +191,10 @@ Fact estimate_time(const std::shared_ptr<const PreparedScene>& prepared, double 
            (parts.size() < 2 || trial_timer.seconds() < kBudget_s)) {
         parts.push_back(trial.time_part(int(parts.size())));
         first_s += parts.back().first, next_s += parts.back().next, built_s += parts.back().build;
-        if (on_progress) on_progress(std::min(1.0, trial_timer.seconds() / kBudget_s));
+        if (const double done = trial_timer.seconds() / kBudget_s; on_progress && done < 1) on_progress(done);
     }
+    // Also where all parts took less than the time there is.
+    if (on_progress) on_progress(1);
     const double share = double(parts.size()) / trial.part_count();
     const double build_s = extrapolate_build(parts, trial.part_count());
     first_s = std::max(0.0, first_s - built_s) / share + build_s;
