@@ -86,10 +86,13 @@ class Mesh:
             if edges.dtype.kind == "f" and not (np.isfinite(edges).all() and (edges == np.floor(edges)).all()):
                 raise ValueError("creases: the first two of a row are indices of positions, whole numbers")
             edges, sharpness = edges.astype(np.int64), np.ascontiguousarray(rows[:, 2])
+        self.creases, self.sharpness = self._check_edges(edges), sharpness
+
+    def _check_edges(self, value: Any) -> Array:
+        edges = to_numpy(value, "creases")
         if edges.ndim != 2 or edges.shape[1] != 2:
             raise ValueError(f"creases: the shape of edges is {edges.shape}, not (K, 2)")
-        self.creases = as_indices(edges.reshape(-1), "creases", len(self.positions)).reshape(-1, 2)
-        self.sharpness = sharpness
+        return as_indices(edges.reshape(-1), "creases", len(self.positions)).reshape(-1, 2)
 
     def _check_count(self, array: Optional[Array], indices: Optional[Array], name: str) -> None:
         if array is None:
@@ -115,10 +118,7 @@ class Mesh:
                 arrays[f"{name[:-1]}_indices"] = as_indices(indices, f"{name[:-1]}_indices", len(values))
             self._check_count(arrays[name], indices, name)
         if self.creases is not None and self.sharpness is not None:
-            edges = to_numpy(self.creases, "creases")
-            if edges.ndim != 2 or edges.shape[1] != 2:
-                raise ValueError(f"creases: the shape of edges is {edges.shape}, not (K, 2)")
-            arrays["creases"] = as_indices(edges.reshape(-1), "creases", len(self.positions)).reshape(-1, 2)
+            arrays["creases"] = self._check_edges(self.creases)
             arrays["sharpness"] = as_floats(self.sharpness, "sharpness of creases", None)
             check_finite(arrays["sharpness"], "sharpness of creases")
             if len(arrays["creases"]) != len(arrays["sharpness"]):

@@ -43,14 +43,12 @@ std::optional<Stage> set_up(Scene&& scene, const RenderSettings& settings, const
 
 /// Samples are added whole, so that a lost device loses no others.
 bool render_and_save(Engine& engine, Film& film, const RenderControl& control) {
-    bool is_complete = false;
     try {
-        is_complete = engine.render(film, control);
+        return engine.render(film, control);
     } catch (...) {
         if (control.save.call) control.save.call();
         throw;
     }
-    return is_complete;
 }
 
 } // namespace

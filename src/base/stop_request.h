@@ -13,7 +13,8 @@ struct StopRequest : std::exception {
 };
 
 /// While it lives, parallel loops of this thread, and those inside their bodies, throw StopRequest before the
-/// next range once `is_asked_for` holds, which is called from any thread, also at once. Empty: never.
+/// next range (base/parallel.cpp) once `is_asked_for` holds, which is called from any thread, also at once.
+/// Empty: never.
 class StopScope {
   public:
     explicit StopScope(std::function<bool()> is_asked_for);
