@@ -137,6 +137,19 @@ TEST(PatchTreeCacheLimits, many_small_trees_find_slots_while_there_is_room) {
     EXPECT_GT(count_rebuilt(0), 500u) << "a slot for 4096 bytes";
 }
 
+/// Look-ups go on to the next slot without a look at the tree of another key.
+TEST(PatchTreeSlot, holds_a_tree_beside_bits_of_its_hash) {
+    cpu::CachedTree tree;
+    constexpr uint64_t kHash = 0x123456789abcdef0, kOther = kHash ^ uint64_t(1) << 63;
+    const cpu::TreeSlot slot(&tree, kHash), zero(&tree, 0), empty;
+    EXPECT_EQ(slot.tree(), &tree);
+    EXPECT_EQ(empty.tree(), nullptr);
+    EXPECT_TRUE(slot.may_hold(kHash));
+    EXPECT_FALSE(slot.may_hold(kOther));
+    EXPECT_TRUE(zero.may_hold(0));
+    EXPECT_FALSE(empty.may_hold(0)) << "an empty slot is of no key";
+}
+
 TEST(PatchTreeCacheLimits, new_trees_alone_do_not_make_a_cache_grow) {
     size_t peak = 0;
     const cpu::TraceCounters once = visit_tiles({10 * kTreeBytes, 1000 * kTreeBytes}, 200, 1, &peak);

@@ -30,6 +30,12 @@ uint64_t hash_key(const TreeKey& key) {
     return mix(mix(uint64_t(key.patch) << 32 | key.surface) + (uint64_t(key.tile) << 32 | key.levels));
 }
 
+/// What a ray looks at next, while the key is still on its way.
+void prefetch_boxes(const CachedTree* tree) {
+    const char* boxes = reinterpret_cast<const char*>(tree + 1);
+    for (size_t line = 0; line < sizeof(Node16); line += 64) __builtin_prefetch(boxes + line);
+}
+
 void* allocate_aligned(size_t bytes) {
     void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
     if (!memory) throw std::bad_alloc();
@@ -62,7 +68,7 @@ PatchTreeCache::PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree)
         const size_t most_slots = std::bit_floor(limits.cap_bytes / (8 * sizeof(slots_[0])) + 1);
         slot_count_ = std::max(std::bit_ceil(std::clamp<size_t>(count, 64, size_t(1) << 20)),
                                std::min(std::bit_ceil(2 * limits.patch_count), most_slots));
-        slots_ = std::make_unique<std::atomic<CachedTree*>[]>(slot_count_);
+        slots_ = std::make_unique<std::atomic<TreeSlot>[]>(slot_count_);
     }
     const auto without_table = [&](size_t bytes) { return bytes - std::min(bytes, table_bytes()); };
     cap_bytes_ = without_table(limits.cap_bytes), most_bytes_ = without_table(limits.most_bytes);
@@ -70,7 +76,7 @@ PatchTreeCache::PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree)
 
 PatchTreeCache::~PatchTreeCache() {
     for (size_t slot = 0; slot < slot_count_; ++slot)
-        if (CachedTree* tree = slots_[slot].load()) free_tree(tree);
+        if (CachedTree* tree = slots_[slot].load().tree()) free_tree(tree);
     for (TraceContext* context = contexts_.load(); context;) {
         for (const TraceContext::Retired& retired : context->retired) free_tree(retired.tree);
         delete std::exchange(context, context->next);
@@ -100,9 +106,9 @@ void PatchTreeCache::release(TraceContext& context) {
 
 void PatchTreeCache::remove(const std::function<bool(const TreeKey&)>& is_stale) {
     for (size_t slot = 0; slot < slot_count_; ++slot) {
-        CachedTree* tree = slots_[slot].load();
+        CachedTree* tree = slots_[slot].load().tree();
         if (!tree || !is_stale(tree->key)) continue;
-        slots_[slot].store(nullptr);
+        slots_[slot].store({});
         free_tree(tree);
     }
     // What workers found last is found anew.
@@ -113,8 +119,11 @@ CachedTree* PatchTreeCache::find(TraceContext& context, const TreeKey& key) cons
     if (slot_count_ == 0) return nullptr;
     const size_t home = hash_key(key);
     for (size_t probe = 0; probe < kProbeCount; ++probe) {
-        CachedTree* tree = slots_[(home + probe) & (slot_count_ - 1)].load(std::memory_order_seq_cst);
-        if (tree && tree->key == key) {
+        const TreeSlot slot = slots_[(home + probe) & (slot_count_ - 1)].load(std::memory_order_seq_cst);
+        if (!slot.may_hold(home)) continue;
+        CachedTree* tree = slot.tree();
+        prefetch_boxes(tree);
+        if (tree->key == key) {
             if (!tree->is_recent.load(std::memory_order_relaxed))
                 tree->is_recent.store(1, std::memory_order_relaxed);
             ++context.counters.reused;
@@ -242,12 +251,14 @@ CachedTree* PatchTreeCache::find_owned(TraceContext& context, const TreeKey& key
 
 void PatchTreeCache::offer(TraceContext& context, CachedTree* tree) {
     const size_t home = hash_key(tree->key);
+    const TreeSlot slot(tree, home);
     for (size_t probe = 0; probe < kProbeCount; ++probe) {
-        CachedTree* expected = nullptr;
-        if (slots_[(home + probe) & (slot_count_ - 1)].compare_exchange_strong(expected, tree)) return;
+        TreeSlot expected;
+        if (slots_[(home + probe) & (slot_count_ - 1)].compare_exchange_strong(expected, slot)) return;
     }
     // Every slot of this key is taken: the first one makes way.
-    if (CachedTree* previous = slots_[home & (slot_count_ - 1)].exchange(tree)) retire(context, previous);
+    if (CachedTree* previous = slots_[home & (slot_count_ - 1)].exchange(slot).tree())
+        retire(context, previous);
 }
 
 void PatchTreeCache::retire(TraceContext& context, CachedTree* tree) {
@@ -286,11 +297,12 @@ void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
     const size_t step_count = std::min(2 * slot_count_, kLongestSearch);
     size_t unlinked = 0;
     for (size_t step = 0; step < step_count && unlinked < target; ++step) {
-        std::atomic<CachedTree*>& slot = slots_[hand_.fetch_add(1) & (slot_count_ - 1)];
-        CachedTree* tree = slot.load();
+        std::atomic<TreeSlot>& slot = slots_[hand_.fetch_add(1) & (slot_count_ - 1)];
+        TreeSlot held = slot.load();
+        CachedTree* tree = held.tree();
         if (!tree || tree->is_recent.exchange(0)) continue;
         const size_t tree_bytes = tree->byte_count;
-        if (!slot.compare_exchange_strong(tree, nullptr)) continue;
+        if (!slot.compare_exchange_strong(held, TreeSlot())) continue;
         retire(context, tree);
         unlinked += tree_bytes;
     }

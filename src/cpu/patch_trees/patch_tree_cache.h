@@ -15,6 +15,7 @@
 
 #include "cpu/patch_trees/given_up_trees.h"
 #include "cpu/patch_trees/patch_tree.h"
+#include "cpu/patch_trees/tree_slot.h"
 #include "relief/render.h"
 
 namespace relief::cpu {
@@ -173,7 +174,7 @@ class PatchTreeCache {
     void note_peak(size_t now);
     void own(TraceContext& context, CachedTree* tree) const;
     CachedTree* find_owned(TraceContext& context, const TreeKey& key) const;
-    size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<CachedTree*>); }
+    size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<TreeSlot>); }
 
     std::atomic<size_t> cap_bytes_; ///< without the table
     size_t most_bytes_;             ///< likewise
@@ -181,7 +182,7 @@ class PatchTreeCache {
     std::atomic<size_t> rebuilt_bytes_{0}; ///< since the cap was set
     BuildTreeFunction build_tree_;
     size_t slot_count_ = 0; ///< power of two, or 0
-    std::unique_ptr<std::atomic<CachedTree*>[]> slots_;
+    std::unique_ptr<std::atomic<TreeSlot>[]> slots_;
     std::atomic<size_t> hand_{0}, allocated_{0}, peak_{0};
     std::atomic<size_t> retired_{0}; ///< bytes unlinked and not freed yet; part of allocated_
     mutable std::atomic<uint64_t> epoch_{1};
