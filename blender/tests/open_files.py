@@ -32,11 +32,7 @@ def render(engine, name):
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 240, 180, 100
     scene.cycles.samples = scene.relief.samples = 16
     scene.use_nodes = scene.render.use_sequencer = False
-    settings = scene.render.image_settings
-    if hasattr(settings, "media_type"):
-        settings.media_type = "MULTI_LAYER_IMAGE"
-    settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
-    scene.render.filepath = str((support.KEEP or pathlib.Path(tempfile.mkdtemp())) / f"{name}_{engine.lower()}.exr")
+    support.write_layers(scene, (support.KEEP or pathlib.Path(tempfile.mkdtemp())) / f"{name}_{engine.lower()}.exr")
     bpy.ops.render.render(write_still=True)
     return support.Layers(scene.render.filepath)["Combined"]
 

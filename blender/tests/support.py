@@ -77,11 +77,7 @@ class BlenderTest(unittest.TestCase):
         if samples is not None:
             scene.relief.samples = scene.cycles.samples = samples
         file = (KEEP or self.folder) / f"{self.id().split('.')[-1]}_{name}_{engine.lower()}.exr"
-        settings = scene.render.image_settings
-        if hasattr(settings, "media_type"):
-            settings.media_type = "MULTI_LAYER_IMAGE"
-        settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
-        scene.render.filepath = str(file)
+        write_layers(scene, file)
         bpy.ops.render.render(write_still=True)
         return Layers(file)
 
@@ -122,6 +118,23 @@ class BlenderTest(unittest.TestCase):
         self.assertGreater(theirs.brightness, 0.003, "the picture is dark")
         self.assertAlmostEqual(ratio, 1, delta=tolerance)
         return ours, theirs
+
+
+def write_layers(scene, file):
+    """Renders are written as read_exr reads them: all layers in one part, as floats, without compression."""
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):  # from 5.0 on
+        settings.media_type, settings.use_exr_interleave = "MULTI_LAYER_IMAGE", True
+    settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
+    scene.render.filepath = str(file)
+
+
+def find_curves(owner):
+    """The animation curves of what an object, camera, material, ... is a part of."""
+    action = owner.id_data.animation_data.action
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
 
 
 def add_camera(place, target, lens=50.0):

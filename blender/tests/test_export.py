@@ -155,7 +155,9 @@ class Materials(BlenderTest):
         for socket in self.principled.inputs:
             if socket.name in {"Coat Weight", "Sheen Weight", "Diffuse Roughness", "Emission Strength", "Metallic"}:
                 socket.default_value = 0.5
-        for name in ("Roughness", "Coat Roughness", "Sheen Roughness", "Diffuse Roughness", "Coat Weight"):
+        names = ["Roughness", "Coat Roughness", "Sheen Roughness", "Coat Weight"]
+        names.append("Diffuse Roughness" if "Diffuse Roughness" in self.principled.inputs else "Sheen Weight")
+        for name in names:
             self.feed(self.texture().outputs[0], name)
         self.export()
         self.assertTrue(any("fifth texture" in line for line in self.report_lines.lines))

@@ -1,8 +1,10 @@
 """Subdivision, instances, animation, cameras and the border: the same pictures as by Cycles."""
+import unittest
+
 import bpy
 import numpy as np
 from support import (BlenderTest, Layers, aim, displace, main, make_grid, make_hook, make_image, make_material, make_object,
-                     set_world, subdivide)
+                     set_world, subdivide, write_layers)
 
 CUBE = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 CUBE_FACES = [(0, 1, 3, 2), (2, 3, 7, 6), (6, 7, 5, 4), (4, 5, 1, 0), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -36,6 +38,7 @@ class Geometry(BlenderTest):
         plain = self.render("RELIEF", "plain")
         self.assertGreater(np.mean(ours.mask != plain.mask), 0.01, "creases change nothing")
 
+    @unittest.skipIf(bpy.app.version < (4, 3), "adaptive surfaces of Cycles 4.2 differ from its own uniform ones")
     def test_displaced_subdivision_with_creases_adaptively(self):
         ob = make_cube()
         set_creases(ob.data, [((0, 1), 0.5), ((1, 3), 0.5), ((3, 2), 0.5), ((2, 0), 0.5)])
@@ -132,9 +135,7 @@ class Geometry(BlenderTest):
             strength.default_value = value
             strength.keyframe_insert("default_value", frame=frame)
         scene.frame_start, scene.frame_end, scene.render.engine = 1, 2, "RELIEF"
-        settings = scene.render.image_settings
-        settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "NONE"
-        scene.render.filepath = str(self.folder / "frame_####.exr")
+        write_layers(scene, self.folder / "frame_####.exr")
         scene.relief.samples = 2
         bpy.ops.render.render(animation=True)
         first, second = (Layers(self.folder / f"frame_000{i}.exr") for i in (1, 2))

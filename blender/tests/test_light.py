@@ -1,5 +1,6 @@
 """Lights, worlds and materials: as bright as by Cycles."""
 import math
+import unittest
 
 import bpy
 import numpy as np
@@ -65,6 +66,7 @@ class Lights(BlenderTest):
             self.compare_brightness(shape.lower())
             bpy.data.objects.remove(light)
 
+    @unittest.skipIf(bpy.app.version < (4, 4), "lights have no exposure")
     def test_exposure_temperature_and_nodes_of_a_light(self):
         light = add_light("AREA", (1, 0.5, 2), energy=60.0)
         light.data.exposure, light.data.use_temperature, light.data.temperature = 1.0, True, 3000
@@ -73,6 +75,7 @@ class Lights(BlenderTest):
         emission.inputs["Color"].default_value, emission.inputs["Strength"].default_value = (0.5, 0.9, 1, 1), 0.7
         self.compare_brightness()
 
+    @unittest.skipIf(bpy.app.version < (4, 4), "all lights are normalized")
     def test_a_light_that_is_not_normalized(self):
         for kind in ("AREA", "POINT", "SPOT", "SUN"):
             light = add_light(kind, (1, 0.5, 2), energy=20.0)
@@ -201,6 +204,7 @@ class Principled(BlenderTest):
     def test_sheen(self):
         self.check(False, 0.03, Sheen_Weight=0.5, Sheen_Roughness=0.5, Base_Color=(0.2, 0.2, 0.3))
 
+    @unittest.skipIf(bpy.app.version < (4, 3), "Blender has no diffuse roughness")
     def test_diffuse_roughness(self):
         self.check(Diffuse_Roughness=0.5, Specular_IOR_Level=0.0)
 

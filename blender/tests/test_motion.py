@@ -4,7 +4,7 @@ import unittest
 
 import bpy
 import numpy as np
-from support import (BlenderTest, Layers, add_light, aim, displace, main, make_grid, make_hook, make_image, make_material,
+from support import (BlenderTest, Layers, add_light, aim, displace, find_curves, main, make_grid, make_hook, make_image, make_material,
                      make_object, set_world, subdivide)
 from test_geometry import CUBE, CUBE_FACES
 
@@ -20,7 +20,7 @@ def animate(owner, path, *values, frames=(0, 2)):
     for frame, value in zip(frames, values):
         setattr(owner, path, value)
         owner.keyframe_insert(path, frame=frame)
-    for curve in owner.id_data.animation_data.action.fcurves:
+    for curve in find_curves(owner):
         curve.extrapolation = "LINEAR"
         for point in curve.keyframe_points:
             point.interpolation = "LINEAR"
