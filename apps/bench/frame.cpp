@@ -17,8 +17,8 @@ namespace relief::bench {
 
 namespace {
 
-constexpr int kBounces = 4;
-constexpr double kGoal = 2;         ///< times the samples a second of the baseline
+constexpr int kFrameBounces = 4;
+constexpr double kFrameGoal = 2;    ///< times the samples a second of the baseline
 constexpr uint32_t kSeed = 0;       ///< of the measured runs
 constexpr uint32_t kWarmUpSeed = 1; ///< another, so that two pictures of one program show what noise is
 
@@ -61,7 +61,7 @@ class FrameSuite {
   private:
     static RenderSettings make_render_settings(const FrameOptions& options) {
         RenderSettings settings = options.settings;
-        settings.image.bounces = kBounces;
+        settings.image.bounces = kFrameBounces;
         return settings;
     }
 
@@ -80,7 +80,7 @@ class FrameSuite {
                                {"width", s.image.width},
                                {"height", s.image.height},
                                {"samples", s.image.spp},
-                               {"bounces", kBounces},
+                               {"bounces", kFrameBounces},
                                {"threads", count_threads(s)},
                                {"runs", options_.runs},
                                {"isas", options_.isas},
@@ -139,10 +139,10 @@ class FrameSuite {
         if (ratio.kind() == Value::Kind::nothing) return; // no time was measured
         const double reached = ratio["median"].get<double>();
         result_["goals"].push_back({{"name", what + ": samples a second"},
-                                    {"goal", kGoal},
+                                    {"goal", kFrameGoal},
                                     {"reached", reached},
                                     {"unit", "times those of the baseline"},
-                                    {"met", reached >= kGoal}});
+                                    {"met", reached >= kFrameGoal}});
     }
 
     const FrameOptions& options_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bench/tree_rays.h"
+#include "common/vectors.h"
 #include "relief/error.h"
 
 namespace relief::bench {
@@ -20,7 +21,7 @@ constexpr Vec3f kToSun{-0.48f, 0.64f, 0.6f};
 /// First random number of each set of rays; the sets share none.
 constexpr uint32_t kOcclusionNumbers = 0x40000000u, kBounceNumbers = 0x04000000u;
 
-float dot(const Vec3f& a, const Vec3f& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+using vectors::dot;
 
 Camera make_lens_camera(Camera camera) {
     const Vec3f to{camera.to.x - camera.from.x, camera.to.y - camera.from.y, camera.to.z - camera.from.z};

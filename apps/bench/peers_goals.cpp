@@ -12,10 +12,10 @@ namespace relief::bench {
 
 namespace {
 
-constexpr double kBytesAPatch = 64, kBytesAMicroQuad = 14, kPartyPeakMebibytes = 512;
+constexpr double kPeersBytesAPatch = 64, kBytesAMicroQuad = 14, kPeersPartyMebibytes = 512;
 constexpr double kColdPrimary = 12, kColdPrimaryTriangles = 60, kColdSecond = 3, kColdSecondTriangles = 10;
 constexpr double kPinhole = 5, kCoherent = 2, kIncoherent = 1.7, kIncoherentGrid = 2.3;
-constexpr double kDepthRatio = 1.3, kTwoThreads = 1.9, kAvx2 = 0.7;
+constexpr double kPeersDepthRatio = 1.3, kTwoThreads = 1.9, kAvx2 = 0.7;
 
 /// Ratio of a goal of 0 that was reached.
 constexpr double kReachedFully = 1;
@@ -151,7 +151,7 @@ void add_bounce_goal(const Value& bounces, GoalList& goals) {
         if (bounce["depth"] == 5) last = bounce["seconds_a_ray"].get<double>();
     }
     if (first && last && *first > 0)
-        goals.add_most("bounce 5 against bounce 1, time a ray", kDepthRatio, *last / *first, "times");
+        goals.add_most("bounce 5 against bounce 1, time a ray", kPeersDepthRatio, *last / *first, "times");
 }
 
 /// Rays that differ from Embree's triangles other than at edges or at grazing angles, or from the tessellated
@@ -173,8 +173,9 @@ void add_agreement_goal(const Value& agreements, GoalList& goals) {
 Value make_peers_goals(const Value& result) {
     GoalList goals;
     if (result.contains("party"))
-        goals.add_most("party, peak resident of this process, making the scene included", kPartyPeakMebibytes,
-                       result["party"]["peak_resident_bytes"].get<double>() / (1 << 20), "MiB");
+        goals.add_most("party, peak resident of this process, making the scene included",
+                       kPeersPartyMebibytes, result["party"]["peak_resident_bytes"].get<double>() / (1 << 20),
+                       "MiB");
     const auto is_goal_level = [](const Value& scene) {
         return scene["level"] == "5" || scene["level"] == "auto";
     };
@@ -185,7 +186,7 @@ Value make_peers_goals(const Value& result) {
         goals.set_place(scene);
         const Value& memory = scene["memory"];
         for (const auto& [part, goal] :
-             {std::pair("bytes_a_patch", kBytesAPatch), {"bytes_a_micro_quad", kBytesAMicroQuad}})
+             {std::pair("bytes_a_patch", kPeersBytesAPatch), {"bytes_a_micro_quad", kBytesAMicroQuad}})
             if (memory.contains(part)) goals.add_most(part, goal, memory[part].get<double>(), "bytes");
         add_agreement_goal(scene["agreement"], goals);
         add_cold_goals(scene["cold"], goals);

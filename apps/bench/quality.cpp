@@ -16,18 +16,18 @@ namespace relief::bench {
 
 namespace {
 
-constexpr int kBounces = 4;
+constexpr int kQualityBounces = 4;
 constexpr int kSampleStep = 4;    ///< of a series, times the samples before
 constexpr int kMoreSamples = 4;   ///< of Relief's longest picture, times those of Cycles
 constexpr int kReferenceSeed = 2; ///< not that of the pictures, whose samples it would share
-constexpr double kGoal = 5;
+constexpr double kQualityGoal = 5;
 
 constexpr const char* kAboutError = "Error: mean of (picture - reference)^2 / (reference^2 + 0.01) over "
                                     "pixels and R, G, B, background 0. Each "
                                     "program is held against a reference of its own, with another seed and "
                                     "without a denoiser, whose own noise is "
                                     "in the error.";
-constexpr const char* kAboutTime =
+constexpr const char* kAboutQualityTime =
     "Times are from the scene in memory to the picture in memory, denoising included, as in the suite "
     "cycles. "
     "`times_sooner`: time of Cycles over the time in which Relief has the same error, interpolated in "
@@ -88,9 +88,9 @@ class QualitySuite {
         result_["settings"] = {
             {"width", s.image.width},      {"height", s.image.height},
             {"threads", count_threads(s)}, {"runs", options_.runs},
-            {"bounces", kBounces},         {"reference_samples", options_.reference_samples},
+            {"bounces", kQualityBounces},  {"reference_samples", options_.reference_samples},
             {"scenes", options_.scenes}};
-        result_["comparable"] = Value::list({kAboutError, kAboutTime});
+        result_["comparable"] = Value::list({kAboutError, kAboutQualityTime});
         result_["scenes"] = Value::list(), result_["goals"] = Value::list();
     }
 
@@ -129,7 +129,7 @@ class QualitySuite {
 
     Image make_reference(const std::string& name, Program program) {
         const RenderTask task{.samples = options_.reference_samples,
-                              .bounces = kBounces,
+                              .bounces = kQualityBounces,
                               .seed = kReferenceSeed,
                               .picture = picture_file(name, program, "reference")};
         report_(fmt::format("{}: reference of {} samples", task.picture.stem().string(), task.samples));
@@ -144,7 +144,7 @@ class QualitySuite {
         for (int samples = 1; samples <= factor * options_.most_samples; samples *= kSampleStep) {
             const RenderTask task{
                 .samples = samples,
-                .bounces = kBounces,
+                .bounces = kQualityBounces,
                 .is_denoised = is_denoised,
                 .picture = picture_file(name, program,
                                         fmt::format("{}{}", samples, is_denoised ? "_denoised" : ""))};
@@ -166,10 +166,10 @@ class QualitySuite {
         result_["goals"].push_back(
             {{"name", fmt::format("{}: error of {} samples of Cycles{}", name, best.samples,
                                   cycles.is_denoised ? ", both denoised" : "")},
-             {"goal", kGoal},
+             {"goal", kQualityGoal},
              {"reached", sooner},
              {"unit", "times sooner than Cycles"},
-             {"met", sooner >= kGoal}});
+             {"met", sooner >= kQualityGoal}});
     }
 
     const QualityOptions& options_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/vectors.h"
+
 namespace relief::bench {
 
 namespace {
@@ -14,10 +16,7 @@ constexpr float kPi = std::numbers::pi_v<float>;
 Vec3f add(const Vec3f& a, const Vec3f& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vec3f subtract(const Vec3f& a, const Vec3f& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vec3f scale(const Vec3f& a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-float dot(const Vec3f& a, const Vec3f& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec3f cross(const Vec3f& a, const Vec3f& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+using vectors::cross, vectors::dot;
 Vec3f make_unit(const Vec3f& a) { return scale(a, 1 / std::sqrt(dot(a, a))); }
 
 /// Hash to [0, 1) (finaliser of MurmurHash3).

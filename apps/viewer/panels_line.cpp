@@ -10,7 +10,7 @@ namespace relief::viewer {
 
 namespace {
 
-constexpr const char* kKeys[][2] = {
+constexpr const char* kKeyTexts[][2] = {
     {"left button", "turns; a click selects and explains; paints where that is chosen"},
     {"middle button", "turns; with shift moves, with control zooms (as Blender)"},
     {"alt + left, middle, right", "turns, moves, zooms (as Maya: panel Camera)"},
@@ -133,7 +133,7 @@ void draw_help(Workbench& workbench) {
     ImGui::SetNextWindowPos({40, 40}, ImGuiCond_Appearing);
     if (ImGui::Begin("Keys, buttons and panels (F1)", &is_shown,
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
-        draw_table("keys", kKeys);
+        draw_table("keys", kKeyTexts);
         ImGui::Separator();
         draw_table("panels", kPanels);
     }

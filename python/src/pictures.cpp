@@ -30,7 +30,8 @@ nb::object view_pixels(nb::handle self) {
 }
 
 /// With more entries of the header than the picture has.
-void save(Picture& picture, const std::string& file, const std::map<std::string, std::string>& entries) {
+void save_picture(Picture& picture, const std::string& file,
+                  const std::map<std::string, std::string>& entries) {
     const GateVisit visit;
     const nb::gil_scoped_release release;
     const std::lock_guard lock(picture.mutex);
@@ -66,7 +67,7 @@ nb::object make_picture(Image&& image) { return nb::cast(std::make_unique<Pictur
 void add_pictures(nb::module_& module) {
     nb::class_<Picture>(module, "Image", "Pixels of a picture with named channels.")
         .def("array", [](nb::handle self) { return view_pixels(self); })
-        .def("save", &save, nb::arg("file"), nb::arg("entries"))
+        .def("save", &save_picture, nb::arg("file"), nb::arg("entries"))
         .def_prop_ro("channels", [](const Picture& p) { return p.image.channels; })
         .def_prop_ro("window",
                      [](const Picture& p) {

@@ -32,12 +32,12 @@ namespace {
 
 static_assert(sizeof(Ray) == 8 * sizeof(float) && sizeof(HitAttributes) == 11 * sizeof(float));
 
-constexpr size_t kGrain = 1 << 14; ///< rays
+constexpr size_t kRayGrain = 1 << 14; ///< rays
 
 /// The lowest index for which `is_bad` holds.
 template <class IsBad> std::optional<size_t> find_first(size_t count, const IsBad& is_bad) {
     std::atomic<size_t> first{count};
-    parallel_for("find_bad_rays", count, kGrain, [&](size_t begin, size_t end) {
+    parallel_for("find_bad_rays", count, kRayGrain, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             if (!is_bad(k)) continue;
             for (size_t known = first; k < known && !first.compare_exchange_weak(known, k);) {
@@ -84,7 +84,7 @@ nb::object pack_rays(const Array2<float>& origins, const Array2<float>& directio
         const float *from = origins.data(), *along = directions.data(), *low = t_min.data(),
                     *high = t_max.data();
         const size_t low_step = t_min.shape(0) == 1 ? 0 : 1, high_step = t_max.shape(0) == 1 ? 0 : 1;
-        parallel_for("pack_rays", count, kGrain, [&](size_t begin, size_t end) {
+        parallel_for("pack_rays", count, kRayGrain, [&](size_t begin, size_t end) {
             for (size_t k = begin; k < end; ++k)
                 rays[k] = {{from[3 * k], from[3 * k + 1], from[3 * k + 2]},
                            low[low_step * k],

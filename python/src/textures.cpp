@@ -20,12 +20,12 @@ namespace relief::python {
 
 namespace {
 
-constexpr size_t kGrain = 1 << 16; ///< texels
+constexpr size_t kTexelGrain = 1 << 16; ///< texels
 
 /// Four channels a texel; missing ones are 0, a missing fourth is `one`.
 template <class From, class To, class Convert>
 void spread(const From* from, size_t channels, To one, std::vector<To>& to, const Convert& convert) {
-    parallel_for("spread_texels", to.size() / 4, kGrain, [&](size_t begin, size_t end) {
+    parallel_for("spread_texels", to.size() / 4, kTexelGrain, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             for (size_t c = 0; c < 4; ++c)
                 to[4 * k + c] = c < channels ? convert(from[channels * k + c]) : (c == 3 ? one : To(0));
@@ -76,7 +76,7 @@ nb::object make_texel_array(const Texture& texture) {
     {
         const GateVisit visit;
         const nb::gil_scoped_release release;
-        parallel_for("gather_texels", texels, kGrain, [&](size_t begin, size_t end) {
+        parallel_for("gather_texels", texels, kTexelGrain, [&](size_t begin, size_t end) {
             for (size_t k = begin; k < end; ++k)
                 for (size_t c = 0; c < channels; ++c)
                     values[channels * k + c] = texture.floats.empty()

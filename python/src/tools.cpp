@@ -38,7 +38,7 @@ nb::object make_number(double number) {
 }
 
 /// The keys of `relief inspect --json` but for the file.
-nb::dict describe(const Inspection& inspection) {
+nb::dict describe_inspection(const Inspection& inspection) {
     nb::dict facts, values;
     nb::list findings;
     for (const Fact& fact : inspection.facts) {
@@ -68,7 +68,7 @@ template <class Work> nb::dict inspect(const Work& work) {
         const nb::gil_scoped_release release;
         inspection = work();
     }
-    return describe(inspection);
+    return describe_inspection(inspection);
 }
 
 nb::dict inspect_parsed(const ParsedScene& parsed, const nb::dict& keywords) {

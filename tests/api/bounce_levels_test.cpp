@@ -11,7 +11,7 @@ namespace relief {
 namespace {
 
 /// Rough, so that rays bounce from it to it.
-Scene make_scene() {
+Scene make_bounce_scene() {
     const Displacement displacement =
         test::make_displacement(test::make_random_map(64, 64, 0.15f, 5), DisplacementSpace::tangent);
     Scene scene = test::make_body_scene(test::make_torus(6, 9), displacement);
@@ -24,7 +24,7 @@ RenderResult render_body(BounceLevels bounce_levels, int level, float camera_z =
     RenderSettings settings;
     settings.image.width = settings.image.height = 96, settings.image.spp = 2, settings.image.bounces = 2;
     settings.surface.level = level, settings.surface.bounce_levels = bounce_levels;
-    Scene scene = make_scene();
+    Scene scene = make_bounce_scene();
     scene.camera.from.z = camera_z;
     return render(std::move(scene), settings);
 }
@@ -48,7 +48,7 @@ TEST(BounceLevelsSetting, are_those_of_the_camera_within_a_body) {
 /// An open bowl from within: all its rays go towards the inside of its surface.
 TEST(BounceLevelsSetting, are_those_of_the_camera_towards_the_inside_of_a_surface) {
     const auto render_bowl = [](BounceLevels bounce_levels) {
-        Scene scene = make_scene();
+        Scene scene = make_bounce_scene();
         Mesh& mesh = scene.meshes[0] = test::make_cube_sphere(6);
         mesh.face_sizes.resize(mesh.face_sizes.size() / 2);
         mesh.position_indices.resize(mesh.position_indices.size() / 2);

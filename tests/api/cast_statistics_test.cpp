@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kBounces = 2;
 
-RenderSettings make_settings() {
+RenderSettings make_cast_settings() {
     RenderSettings settings;
     settings.image.width = 96, settings.image.height = 64;
     settings.image.spp = 2, settings.image.bounces = kBounces;
@@ -23,7 +23,7 @@ const Scene& get_ear() {
 }
 
 TEST(CastStatistics, are_ordered_by_depth_and_add_up_to_the_whole) {
-    const Statistics s = render(get_ear(), make_settings()).statistics;
+    const Statistics s = render(get_ear(), make_cast_settings()).statistics;
     CastStatistics sum;
     uint64_t shadow_rays = 0, bounce_rays = 0;
     int previous = -1;
@@ -55,7 +55,7 @@ TEST(CastStatistics, are_ordered_by_depth_and_add_up_to_the_whole) {
 TEST(CastStatistics, show_that_trees_are_built_again_for_every_cast_without_a_cache) {
     uint64_t previous = 0;
     for (const int bounces : {0, 1}) {
-        RenderSettings settings = make_settings();
+        RenderSettings settings = make_cast_settings();
         settings.image.bounces = bounces;
         const Statistics cached = render(get_ear(), settings).statistics;
         settings.surface.cache_bytes = 0;

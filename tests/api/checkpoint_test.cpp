@@ -21,7 +21,7 @@ Scene make_torus_scene() {
     return scene;
 }
 
-RenderSettings make_settings(int spp) {
+RenderSettings make_kept_settings(int spp) {
     RenderSettings settings;
     settings.image.width = 60, settings.image.height = 44, settings.image.spp = spp,
     settings.image.bounces = 2;
@@ -45,9 +45,9 @@ struct Keeper {
 };
 
 /// Cancels once some progress was made.
-class Canceller final : public RenderObserver {
+class FractionCanceller final : public RenderObserver {
   public:
-    explicit Canceller(double fraction) : limit_(fraction) {}
+    explicit FractionCanceller(double fraction) : limit_(fraction) {}
     void on_progress(const Progress& progress) override { fraction_ = progress.fraction; }
     bool is_cancelled() const override { return fraction_ >= limit_; }
 
@@ -65,11 +65,11 @@ RenderResult resume(const std::string& bytes, const RenderSettings& settings, Ke
 } // namespace
 
 TEST(Checkpoints, some_samples_then_more_are_the_picture_of_all) {
-    const Image whole = render(make_torus_scene(), make_settings(37)).image;
+    const Image whole = render(make_torus_scene(), make_kept_settings(37)).image;
     for (const int first : {1, 5, 16, 36}) {
         Keeper keeper;
-        render(make_torus_scene(), make_settings(first), nullptr, keeper.checkpoints);
-        RenderSettings settings = make_settings(37);
+        render(make_torus_scene(), make_kept_settings(first), nullptr, keeper.checkpoints);
+        RenderSettings settings = make_kept_settings(37);
         settings.device.threads = 1;
         Keeper again;
         const RenderResult result = resume(keeper.bytes, settings, again);
@@ -81,11 +81,11 @@ TEST(Checkpoints, some_samples_then_more_are_the_picture_of_all) {
 
 TEST(Checkpoints, a_cancelled_render_goes_on_where_it_ended) {
     for (const float noise : {0.0f, 0.05f}) {
-        RenderSettings settings = make_settings(64);
+        RenderSettings settings = make_kept_settings(64);
         settings.image.noise = noise;
         const Image whole = render(make_torus_scene(), settings).image;
         Keeper keeper;
-        Canceller canceller(0.3);
+        FractionCanceller canceller(0.3);
         const RenderResult part = render(make_torus_scene(), settings, &canceller, keeper.checkpoints);
         EXPECT_FALSE(part.is_complete);
         Keeper again;
@@ -94,30 +94,30 @@ TEST(Checkpoints, a_cancelled_render_goes_on_where_it_ended) {
 }
 
 TEST(Checkpoints, come_while_a_picture_is_traced_and_change_nothing) {
-    const Image whole = render(make_torus_scene(), make_settings(20)).image;
+    const Image whole = render(make_torus_scene(), make_kept_settings(20)).image;
     Keeper keeper;
     keeper.checkpoints.interval_s = 1e-9;
-    EXPECT_EQ(render(make_torus_scene(), make_settings(20), nullptr, keeper.checkpoints).image.pixels,
+    EXPECT_EQ(render(make_torus_scene(), make_kept_settings(20), nullptr, keeper.checkpoints).image.pixels,
               whole.pixels);
     EXPECT_GT(keeper.saves, 20);
 }
 
 TEST(Checkpoints, of_another_picture_are_refused) {
     Keeper keeper;
-    render(make_torus_scene(), make_settings(1), nullptr, keeper.checkpoints);
-    RenderSettings other = make_settings(2);
+    render(make_torus_scene(), make_kept_settings(1), nullptr, keeper.checkpoints);
+    RenderSettings other = make_kept_settings(2);
     other.image.seed = 1;
     Keeper again;
     EXPECT_THROW(resume(keeper.bytes, other, again), Error);
-    other = make_settings(2), other.surface.level = 2;
+    other = make_kept_settings(2), other.surface.level = 2;
     EXPECT_THROW(resume(keeper.bytes, other, again), Error);
-    EXPECT_THROW(resume("relief film", make_settings(2), again), Error);
+    EXPECT_THROW(resume("relief film", make_kept_settings(2), again), Error);
 }
 
 TEST(Checkpoints, of_more_samples_than_asked_for_are_taken_as_they_are) {
     Keeper keeper;
-    Canceller canceller(0.3);
-    RenderSettings settings = make_settings(64);
+    FractionCanceller canceller(0.3);
+    RenderSettings settings = make_kept_settings(64);
     render(make_torus_scene(), settings, &canceller, keeper.checkpoints);
     settings.image.spp = 4;
     Keeper again;
@@ -129,15 +129,15 @@ TEST(Checkpoints, of_more_samples_than_asked_for_are_taken_as_they_are) {
 
 TEST(Checkpoints, a_time_limit_holds_from_the_first_pass_that_goes_on) {
     Keeper keeper;
-    render(make_torus_scene(), make_settings(1), nullptr, keeper.checkpoints);
-    RenderSettings settings = make_settings(1 << 20);
+    render(make_torus_scene(), make_kept_settings(1), nullptr, keeper.checkpoints);
+    RenderSettings settings = make_kept_settings(1 << 20);
     settings.image.time_limit_s = 1e-9;
     Keeper again;
     EXPECT_EQ(resume(keeper.bytes, settings, again).statistics.camera_rays, 0u);
 }
 
 TEST(Noise, a_limit_spares_samples_and_keeps_the_mean) {
-    RenderSettings settings = make_settings(256);
+    RenderSettings settings = make_kept_settings(256);
     const Image all = render(make_torus_scene(), settings).image;
     settings.image.noise = 0.1f;
     const RenderResult result = render(make_torus_scene(), settings);
@@ -155,7 +155,7 @@ TEST(Noise, a_limit_spares_samples_and_keeps_the_mean) {
 }
 
 TEST(Noise, the_picture_does_not_depend_on_threads) {
-    RenderSettings settings = make_settings(64);
+    RenderSettings settings = make_kept_settings(64);
     settings.image.noise = 0.05f;
     settings.device.threads = 1;
     const Image one = render(make_torus_scene(), settings).image;
@@ -164,7 +164,7 @@ TEST(Noise, the_picture_does_not_depend_on_threads) {
 }
 
 TEST(TimeLimit, ends_a_render_with_one_sample_at_least) {
-    RenderSettings settings = make_settings(1 << 20);
+    RenderSettings settings = make_kept_settings(1 << 20);
     settings.image.time_limit_s = 1e-6;
     const RenderResult result = render(make_torus_scene(), settings);
     EXPECT_TRUE(result.is_complete);

@@ -13,6 +13,7 @@
 #include "relief/image.h"
 #include "relief/session.h"
 #include "support/matte_scene.h"
+#include "support/saved_film.h"
 
 namespace relief {
 
@@ -45,18 +46,6 @@ RenderSettings make_pixel_settings() {
     RenderSettings settings = test::make_wall_settings(256);
     settings.image.width = settings.image.height = 3;
     return settings;
-}
-
-std::string render_film(const Scene& scene, const RenderSettings& settings) {
-    std::string bytes;
-    Checkpoints checkpoints;
-    checkpoints.save = [&](const std::function<void(std::ostream&)>& write) {
-        std::ostringstream stream;
-        write(stream);
-        bytes = stream.str();
-    };
-    render(scene, settings, nullptr, checkpoints);
-    return bytes;
 }
 
 } // namespace
@@ -120,7 +109,7 @@ TEST(CryptomatteLayers, do_not_depend_on_threads_nor_on_where_a_render_was_inter
     settings.device.threads = 1;
     EXPECT_EQ(render(scene, settings).image.pixels, whole.pixels);
     for (const int first : {1, 5, 16, 36}) {
-        std::istringstream stream(render_film(scene, test::make_wall_settings(first)));
+        std::istringstream stream(test::render_film(scene, test::make_wall_settings(first)));
         Checkpoints checkpoints;
         checkpoints.resume = &stream;
         EXPECT_EQ(render(scene, settings, nullptr, checkpoints).image.pixels, whole.pixels) << first;

@@ -8,13 +8,14 @@
 
 #include "relief/error.h"
 #include "relief/render.h"
+#include "support/saved_film.h"
 #include "support/session_scenes.h"
 
 namespace relief {
 
 namespace {
 
-using test::make_rough_torus;
+using test::make_rough_torus, test::render_film;
 
 constexpr int kWidth = 40, kHeight = 30;
 
@@ -29,19 +30,6 @@ RenderSettings make_part_settings(int first, int last, const Window& window) {
     return settings;
 }
 
-/// Renders a part and keeps its sums.
-std::string render_part(int first, int last, const Window& window) {
-    std::string bytes;
-    Checkpoints checkpoints;
-    checkpoints.save = [&](const std::function<void(std::ostream&)>& write) {
-        std::ostringstream stream;
-        write(stream);
-        bytes = stream.str();
-    };
-    render(make_rough_torus(), make_part_settings(first, last, window), nullptr, checkpoints);
-    return bytes;
-}
-
 FilmPart make_film_part(const std::string& bytes, const std::string& name, int first, const Window& window) {
     return {name, [bytes] { return std::make_unique<std::istringstream>(bytes); }, window, first};
 }
@@ -52,7 +40,7 @@ std::vector<FilmPart> render_parts() {
     for (const auto& [first, last] : {std::pair(5, 12), std::pair(0, 5)})
         for (const Window& window : {Window{0, 0, kWidth, 13}, Window{0, 13, kWidth, kHeight}})
             parts.push_back(make_film_part(
-                render_part(first, last, window),
+                render_film(make_rough_torus(), make_part_settings(first, last, window)),
                 "rows " + std::to_string(window.y0) + " from " + std::to_string(first), first, window));
     return parts;
 }
@@ -99,7 +87,7 @@ TEST(FilmParts, are_refused_by_name) {
     std::vector<FilmPart> twice = parts;
     twice.push_back(parts[2]);
     EXPECT_NE(find_refusal(twice).find("rows 0 from 0: "), std::string::npos);
-    std::string bytes = render_part(0, 5, {0, 0, kWidth, 13});
+    std::string bytes = render_film(make_rough_torus(), make_part_settings(0, 5, {0, 0, kWidth, 13}));
     bytes[bytes.size() / 2] = char(bytes[bytes.size() / 2] ^ 1);
     std::vector<FilmPart> damaged = parts;
     damaged[2] = make_film_part(bytes, "the damaged one", 0, {0, 0, kWidth, 13});

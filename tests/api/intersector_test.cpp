@@ -10,7 +10,7 @@ namespace relief {
 
 namespace {
 
-Scene make_scene() {
+Scene make_query_scene() {
     Scene scene = test::make_body_scene(
         test::make_cube_sphere(3),
         test::make_displacement(test::make_random_map(64, 64, 0.1f, 3), DisplacementSpace::tangent));
@@ -19,7 +19,7 @@ Scene make_scene() {
 }
 
 TEST(Intersector, answers_closest_and_any_for_rays_of_any_length) {
-    const Intersector intersector(make_scene(), {});
+    const Intersector intersector(make_query_scene(), {});
     std::vector<Ray> rays;
     for (int k = 0; k < 3000; ++k) {
         Ray ray;
@@ -87,7 +87,7 @@ TEST(Intersector, gives_positions_within_the_patch) {
 }
 
 TEST(Intersector, respects_the_interval_of_a_ray) {
-    const Intersector intersector(make_scene(), {});
+    const Intersector intersector(make_query_scene(), {});
     Ray ray;
     ray.origin = {4, 0.1f, 0.2f};
     ray.direction = {-1, 0, 0};
@@ -107,8 +107,8 @@ TEST(Intersector, respects_the_interval_of_a_ray) {
 TEST(Intersector, refuses_settings_out_of_range_and_unequal_spans) {
     IntersectorSettings settings;
     settings.surface.level = 40;
-    EXPECT_THROW(Intersector(make_scene(), settings), Error);
-    const Intersector intersector(make_scene(), {});
+    EXPECT_THROW(Intersector(make_query_scene(), settings), Error);
+    const Intersector intersector(make_query_scene(), {});
     const std::vector<Ray> rays(3);
     std::vector<RayHit> hits(2);
     EXPECT_THROW(intersector.closest_hits(rays, hits), Error);

@@ -9,6 +9,7 @@
 #include "relief/image.h"
 #include "relief/session.h"
 #include "support/lit_room.h"
+#include "support/saved_film.h"
 
 namespace relief {
 
@@ -19,18 +20,6 @@ using test::find_mean;
 using test::get_color;
 using test::make_lit_room;
 using test::make_room_settings;
-
-std::string render_film(const RenderSettings& settings) {
-    std::string bytes;
-    Checkpoints checkpoints;
-    checkpoints.save = [&](const std::function<void(std::ostream&)>& write) {
-        std::ostringstream stream;
-        write(stream);
-        bytes = stream.str();
-    };
-    render(make_lit_room(), settings, nullptr, checkpoints);
-    return bytes;
-}
 
 std::string message_of(Scene scene, const RenderSettings& settings) {
     try {
@@ -150,12 +139,12 @@ TEST(LightLayers, go_on_from_the_sums_of_another_render) {
     const Image whole = render(make_lit_room(), settings).image;
     std::ranges::reverse(settings.image.layers); // the order of a request does not matter
     settings.device.threads = 1;
-    std::istringstream stream(render_film(make_room_settings(5)));
+    std::istringstream stream(test::render_film(make_lit_room(), make_room_settings(5)));
     Checkpoints checkpoints;
     checkpoints.resume = &stream;
     EXPECT_EQ(render(make_lit_room(), settings, nullptr, checkpoints).image.pixels, whole.pixels);
     settings.image.layers.front() = "light_key";
-    std::istringstream again(render_film(make_room_settings(5)));
+    std::istringstream again(test::render_film(make_lit_room(), make_room_settings(5)));
     checkpoints.resume = &again;
     settings.image.layers.pop_back();
     EXPECT_THROW(render(make_lit_room(), settings, nullptr, checkpoints), Error) << "a layer less";

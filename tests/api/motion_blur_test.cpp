@@ -22,7 +22,7 @@ using test::make_rough_torus, test::make_session_settings;
 constexpr double kFrame = 12;
 
 /// The body moves, grows its relief and is seen from a camera that moves.
-Scene make_scene(double frame) {
+Scene make_moving_scene(double frame) {
     Scene scene = make_rough_torus();
     const float t = float(frame - kFrame);
     scene.meshes[0].name = "torus";
@@ -36,7 +36,7 @@ Scene make_scene(double frame) {
 
 /// The same but for the mesh, which stays.
 SceneUpdate update_scene(double frame) {
-    Scene scene = make_scene(frame);
+    Scene scene = make_moving_scene(frame);
     const std::string name = scene.meshes[0].name;
     scene.meshes[0] = {};
     scene.meshes[0].name = name;
@@ -44,7 +44,7 @@ SceneUpdate update_scene(double frame) {
     return {std::move(scene), camera, 5};
 }
 
-RenderSettings make_settings(int samples) {
+RenderSettings make_blur_settings(int samples) {
     RenderSettings settings = make_session_settings();
     settings.image.width = 48, settings.image.height = 36, settings.image.spp = samples;
     settings.image.layers.clear();
@@ -53,7 +53,7 @@ RenderSettings make_settings(int samples) {
 
 RenderResult render_blur(const RenderSettings& settings, RenderObserver* observer = nullptr,
                          const Checkpoints& checkpoints = {}) {
-    Session session(make_scene(kFrame), settings, SessionUse::scenes);
+    Session session(make_moving_scene(kFrame), settings, SessionUse::scenes);
     return session.render_moving(kFrame, update_scene, observer, checkpoints);
 }
 
@@ -64,7 +64,8 @@ std::vector<float> average_stills(RenderSettings settings) {
     for (int k = first; k < first + samples; ++k) {
         settings.image.first_sample = k, settings.image.spp = 1;
         const Image still =
-            render(make_scene(find_sample_time(make_scene(kFrame).camera, kFrame, k)), settings).image;
+            render(make_moving_scene(find_sample_time(make_moving_scene(kFrame).camera, kFrame, k)), settings)
+                .image;
         sums.resize(still.pixels.size());
         for (size_t p = 0; p < sums.size(); ++p) sums[p] += double(still.pixels[p]);
     }
@@ -90,20 +91,21 @@ TEST(MotionBlur, spreads_times_evenly_over_the_open_shutter) {
 }
 
 TEST(MotionBlur, is_the_mean_of_still_pictures) {
-    const RenderSettings settings = make_settings(16);
+    const RenderSettings settings = make_blur_settings(16);
     EXPECT_TRUE(render_blur(settings).image.pixels == average_stills(settings));
-    RenderSettings later = make_settings(5);
+    RenderSettings later = make_blur_settings(5);
     later.image.first_sample = 7;
     EXPECT_TRUE(render_blur(later).image.pixels == average_stills(later)) << "any range of samples";
 }
 
 TEST(MotionBlur, differs_from_an_instant) {
-    const RenderSettings settings = make_settings(8);
-    EXPECT_FALSE(render_blur(settings).image.pixels == render(make_scene(kFrame), settings).image.pixels);
+    const RenderSettings settings = make_blur_settings(8);
+    EXPECT_FALSE(render_blur(settings).image.pixels ==
+                 render(make_moving_scene(kFrame), settings).image.pixels);
 }
 
 TEST(MotionBlur, is_the_same_on_engines_that_follow_nothing) {
-    RenderSettings settings = make_settings(3);
+    RenderSettings settings = make_blur_settings(3);
     const Image expected = render_blur(settings).image;
     settings.experiment.structure = StructureKind::kdtree;
     const RenderResult other = render_blur(settings);
@@ -112,7 +114,7 @@ TEST(MotionBlur, is_the_same_on_engines_that_follow_nothing) {
 }
 
 TEST(MotionBlur, goes_on_from_a_checkpoint) {
-    const RenderSettings settings = make_settings(6);
+    const RenderSettings settings = make_blur_settings(6);
     const Image expected = render_blur(settings).image;
     std::stringstream film;
     Checkpoints writing;
@@ -127,12 +129,12 @@ TEST(MotionBlur, goes_on_from_a_checkpoint) {
 
 /// A plane that is carried along with its map, before a camera that stands still, then one that turns.
 TEST(MotionBlur, says_how_far_things_move_over_the_picture) {
-    RenderSettings settings = make_settings(1);
+    RenderSettings settings = make_blur_settings(1);
     settings.image.layers = {"motion"};
     settings.surface.level = 4; // at all times
     const auto render_with = [&](const std::function<void(Scene&, float)>& change) {
         const auto make = [&](double frame) {
-            Scene scene = make_scene(kFrame);
+            Scene scene = make_moving_scene(kFrame);
             change(scene, float(frame - kFrame));
             return scene;
         };
@@ -147,7 +149,7 @@ TEST(MotionBlur, says_how_far_things_move_over_the_picture) {
             .image;
     };
     // Up by half the distance of things, in heights of the picture, over 0.75 frames.
-    const Scene still = make_scene(kFrame);
+    const Scene still = make_moving_scene(kFrame);
     const float distance = length(still.camera.to - still.camera.from);
     const float height = 2 * std::tan(still.camera.fov_degrees * 3.14159265f / 360) * distance;
     const Image turned = render_with([&](Scene& scene, float t) {
@@ -183,7 +185,7 @@ TEST(MotionBlur, says_how_far_things_move_over_the_picture) {
 /// Blocks that come back late have their samples at the times of these: each pixel is that of a picture with
 /// as many samples for all.
 TEST(MotionBlur, asks_for_samples_by_noise) {
-    RenderSettings settings = make_settings(96);
+    RenderSettings settings = make_blur_settings(96);
     settings.image.noise = 0.08f;
     settings.image.layers = {"samples"};
     const Image image = render_blur(settings).image;
@@ -192,7 +194,7 @@ TEST(MotionBlur, asks_for_samples_by_noise) {
     for (size_t k = channel; k < image.pixels.size(); k += stride) counts.insert(int(image.pixels[k]));
     ASSERT_GT(counts.size(), 2u);
     for (const int count : counts) {
-        const Image even = render_blur(make_settings(count)).image;
+        const Image even = render_blur(make_blur_settings(count)).image;
         const size_t even_stride = even.channels.size();
         for (size_t pixel = 0; pixel < image.pixels.size() / stride; ++pixel) {
             if (int(image.pixels[pixel * stride + channel]) != count) continue;
@@ -204,10 +206,10 @@ TEST(MotionBlur, asks_for_samples_by_noise) {
 
 TEST(MotionBlur, refuses_objects_that_come_or_go_in_one_picture) {
     const auto render_with = [](const std::function<void(Scene&)>& change, const char* layer) {
-        RenderSettings settings = make_settings(4);
+        RenderSettings settings = make_blur_settings(4);
         settings.image.layers = {layer};
         settings.image.background = Vec3f{};
-        Session session(make_scene(kFrame), settings, SessionUse::scenes);
+        Session session(make_moving_scene(kFrame), settings, SessionUse::scenes);
         try {
             session.render_moving(kFrame, [&](double frame) {
                 SceneUpdate update = update_scene(frame);
@@ -237,7 +239,7 @@ TEST(MotionBlur, tells_progress_of_the_whole_and_heeds_an_end) {
         bool is_cancelled() const override { return !told.empty() && told.back().samples_done >= most; }
     };
     Watcher watcher;
-    EXPECT_TRUE(render_blur(make_settings(4), &watcher).is_complete);
+    EXPECT_TRUE(render_blur(make_blur_settings(4), &watcher).is_complete);
     ASSERT_FALSE(watcher.told.empty());
     EXPECT_TRUE(std::ranges::is_sorted(watcher.told, {}, &Progress::fraction));
     EXPECT_EQ(watcher.told.back().samples_done, 4);
@@ -245,10 +247,10 @@ TEST(MotionBlur, tells_progress_of_the_whole_and_heeds_an_end) {
     EXPECT_EQ(watcher.told.back().fraction, 1);
     Watcher impatient;
     impatient.most = 2;
-    const RenderResult cut = render_blur(make_settings(16), &impatient);
+    const RenderResult cut = render_blur(make_blur_settings(16), &impatient);
     EXPECT_FALSE(cut.is_complete);
     EXPECT_EQ(cut.whole_samples, 2);
-    EXPECT_TRUE(cut.image.pixels == average_stills(make_settings(2)));
+    EXPECT_TRUE(cut.image.pixels == average_stills(make_blur_settings(2)));
 }
 
 } // namespace

@@ -11,7 +11,7 @@ namespace relief {
 
 namespace {
 
-RenderSettings make_settings() {
+RenderSettings make_watched_settings() {
     RenderSettings settings;
     settings.image.width = 48, settings.image.height = 32;
     settings.image.spp = 8, settings.image.bounces = 1;
@@ -24,8 +24,8 @@ RenderSettings make_settings() {
 TEST(PicturesSoFar, begin_with_a_sample_of_every_pixel_and_change_nothing) {
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
     test::PictureWatcher watcher;
-    const RenderResult watched = render(rock, make_settings(), &watcher);
-    EXPECT_EQ(watched.image.pixels, render(rock, make_settings()).image.pixels);
+    const RenderResult watched = render(rock, make_watched_settings(), &watcher);
+    EXPECT_EQ(watched.image.pixels, render(rock, make_watched_settings()).image.pixels);
     ASSERT_GE(watcher.pictures.size(), 4u); // passes end at 1, 2, 4 and 8
     EXPECT_EQ(test::count_samples(watcher.pictures[0]), std::pair(1.0f, 1.0f));
     float least = 0;
@@ -41,11 +41,11 @@ TEST(PicturesSoFar, come_no_sooner_than_their_interval_but_for_the_first) {
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
     test::PictureWatcher watcher;
     watcher.interval_s = 1000;
-    render(rock, make_settings(), &watcher);
+    render(rock, make_watched_settings(), &watcher);
     EXPECT_EQ(watcher.pictures.size(), 1u);
     test::PictureWatcher nobody;
     nobody.interval_s = std::numeric_limits<double>::infinity();
-    render(rock, make_settings(), &nobody);
+    render(rock, make_watched_settings(), &nobody);
     EXPECT_TRUE(nobody.pictures.empty());
 }
 
@@ -53,7 +53,7 @@ TEST(PicturesSoFar, may_end_the_render) {
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
     test::PictureWatcher watcher;
     watcher.limit = 1;
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_watched_settings();
     settings.image.spp = 100000;
     const RenderResult result = render(rock, settings, &watcher);
     EXPECT_FALSE(result.is_complete);
@@ -61,7 +61,7 @@ TEST(PicturesSoFar, may_end_the_render) {
 }
 
 TEST(PicturesSoFar, of_a_session_are_those_of_its_pictures) {
-    Session session(make_peer_scene("rock", 1, PeerWorld::constant), make_settings());
+    Session session(make_peer_scene("rock", 1, PeerWorld::constant), make_watched_settings());
     test::PictureWatcher watcher;
     const RenderResult first = session.render(&watcher);
     ASSERT_FALSE(watcher.pictures.empty());

@@ -28,7 +28,7 @@ SceneUpdate leave_out_meshes(Scene scene) {
 }
 
 /// Two bodies, one of them a mirror image that glows, over a plain one, in light of an environment and a sun.
-Scene make_scene() {
+Scene make_session_scene() {
     Scene scene = make_rough_torus();
     Material glowing;
     glowing.emission = {0.5f, 0.4f, 0.3f}, glowing.coat_weight = 0.5f;
@@ -97,14 +97,14 @@ const std::vector<Change> kChanges = {
 };
 
 TEST(SessionScenes, gives_the_pictures_of_fresh_scenes) {
-    expect_follows(make_scene(), make_session_settings(), kChanges);
+    expect_follows(make_session_scene(), make_session_settings(), kChanges);
 }
 
 TEST(SessionScenes, follows_filtered_and_smooth_maps) {
     RenderSettings settings = make_session_settings();
     settings.surface.pixel_error = 4;
     for (const MapFilter filter : {MapFilter::mip, MapFilter::cubic}) {
-        Scene scene = make_scene();
+        Scene scene = make_session_scene();
         scene.displacements[0].filter = filter;
         expect_follows(scene, settings, kChanges);
     }
@@ -113,17 +113,17 @@ TEST(SessionScenes, follows_filtered_and_smooth_maps) {
 TEST(SessionScenes, needs_no_engine_that_follows) {
     RenderSettings settings = make_session_settings();
     settings.experiment.structure = StructureKind::kdtree;
-    expect_follows(make_scene(), settings, kChanges);
+    expect_follows(make_session_scene(), settings, kChanges);
 }
 
 TEST(SessionScenes, takes_vectors_in_world_space) {
-    Scene scene = make_scene();
+    Scene scene = make_session_scene();
     scene.displacements[0].space = DisplacementSpace::world;
     expect_follows(scene, make_session_settings(), kChanges);
 }
 
 TEST(SessionScenes, replaces_meshes_that_have_changed) {
-    Scene scene = make_scene();
+    Scene scene = make_session_scene();
     const RenderSettings settings = make_session_settings();
     Session session(scene, settings, SessionUse::scenes);
     session.render();
@@ -136,7 +136,7 @@ TEST(SessionScenes, replaces_meshes_that_have_changed) {
 }
 
 TEST(SessionScenes, builds_no_tree_again_of_what_moves_as_it_is) {
-    Scene scene = make_scene();
+    Scene scene = make_session_scene();
     RenderSettings settings = make_session_settings();
     settings.surface.level = 3;
     Session session(scene, settings, SessionUse::scenes);
@@ -148,7 +148,7 @@ TEST(SessionScenes, builds_no_tree_again_of_what_moves_as_it_is) {
 }
 
 TEST(SessionScenes, refuses_what_it_cannot_follow) {
-    const Scene scene = make_scene();
+    const Scene scene = make_session_scene();
     const RenderSettings settings = make_session_settings();
     Session views(scene, settings, SessionUse::views);
     EXPECT_THROW(views.change_scene({scene, scene.camera, 7}, settings.image), Error);

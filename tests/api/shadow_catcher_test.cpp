@@ -32,7 +32,7 @@ void add_roof(Scene& scene, float height) {
     scene.objects.back().world_from_object.translation.y = height;
 }
 
-RenderSettings make_settings(int size, int spp, int bounces) {
+RenderSettings make_catcher_settings(int size, int spp, int bounces) {
     RenderSettings settings = make_small_settings(size, spp, bounces);
     settings.image.background = Vec3f{};
     return settings;
@@ -46,7 +46,7 @@ double find_mean(const Image& image, const char* channel) {
 }
 
 void expect_alpha(const Scene& scene, double alpha, double tolerance) {
-    const Image image = render(scene, make_settings(8, 64, 0)).image;
+    const Image image = render(scene, make_catcher_settings(8, 64, 0)).image;
     EXPECT_NEAR(find_mean(image, "A"), alpha, tolerance);
     for (const char* channel : {"R", "G", "B"}) EXPECT_EQ(find_mean(image, channel), 0);
 }
@@ -89,8 +89,8 @@ Scene make_sphere_on_floor(bool is_catcher) {
 }
 
 TEST(ShadowCatcher, over_white_is_a_white_floor_under_a_white_sky) {
-    const Image floor = render(make_sphere_on_floor(false), make_settings(24, 256, 0)).image;
-    const Image caught = render(make_sphere_on_floor(true), make_settings(24, 256, 0)).image;
+    const Image floor = render(make_sphere_on_floor(false), make_catcher_settings(24, 256, 0)).image;
+    const Image caught = render(make_sphere_on_floor(true), make_catcher_settings(24, 256, 0)).image;
     double expected = 0, found = 0, darkest = 1;
     size_t pixels = 0;
     const size_t depth = caught.find_channel("depth.Z").value(), alpha = caught.find_channel("A").value();
@@ -107,7 +107,7 @@ TEST(ShadowCatcher, over_white_is_a_white_floor_under_a_white_sky) {
 }
 
 TEST(ShadowCatcher, is_not_seen_but_gives_its_light_to_others) {
-    RenderSettings settings = make_settings(24, 16, 3);
+    RenderSettings settings = make_catcher_settings(24, 16, 3);
     settings.image.layers = {"depth", "id", "N", "Ng", "P", "albedo", "uv", "CryptoObject", "samples"};
     Scene scene = make_sphere_on_floor(false);
     scene.lights = {make_sun({-1, -2, -1})};
@@ -146,7 +146,7 @@ TEST(ShadowCatcher, hides_what_is_behind_it_and_is_hidden_by_lights_that_are_see
     light.radius = 3, light.is_visible_to_camera = true;
     scene.lights.push_back(light);
     add_roof(scene, 6); // shadow, if it were seen
-    const Image image = render(scene, make_settings(8, 4, 0)).image;
+    const Image image = render(scene, make_catcher_settings(8, 4, 0)).image;
     EXPECT_EQ(find_mean(image, "A"), 1);
     EXPECT_EQ(find_mean(image, "shadow.C"), 0);
     EXPECT_GT(find_mean(image, "G"), 0);
@@ -154,16 +154,16 @@ TEST(ShadowCatcher, hides_what_is_behind_it_and_is_hidden_by_lights_that_are_see
 
 TEST(ShadowCatcher, goes_on_and_is_merged_to_the_picture_of_all_samples) {
     Scene scene = make_sphere_on_floor(true);
-    const Image whole = render(scene, make_settings(24, 20, 1)).image;
+    const Image whole = render(scene, make_catcher_settings(24, 20, 1)).image;
     std::stringstream film;
     Checkpoints checkpoints, further;
     checkpoints.save = [&](const std::function<void(std::ostream&)>& write) { film.str(""), write(film); };
-    render(scene, make_settings(24, 13, 1), nullptr, checkpoints);
+    render(scene, make_catcher_settings(24, 13, 1), nullptr, checkpoints);
     further.resume = &film;
-    EXPECT_EQ(render(scene, make_settings(24, 20, 1), nullptr, further).image.pixels, whole.pixels);
+    EXPECT_EQ(render(scene, make_catcher_settings(24, 20, 1), nullptr, further).image.pixels, whole.pixels);
 
     const auto render_part = [&](const Window& crop, int first, int count) {
-        RenderSettings settings = make_settings(24, count, 1);
+        RenderSettings settings = make_catcher_settings(24, count, 1);
         settings.image.crop = crop, settings.image.first_sample = first;
         return render(scene, settings).image;
     };
@@ -189,13 +189,13 @@ std::string complain(const RenderSettings& settings) {
 }
 
 TEST(ShadowCatcher, needs_a_background_that_shines_through_and_a_fixed_number_of_samples) {
-    RenderSettings settings = make_settings(4, 1, 0);
+    RenderSettings settings = make_catcher_settings(4, 1, 0);
     EXPECT_EQ(complain(settings), "accepted");
     for (const std::optional<Vec3f>& other : {std::optional<Vec3f>(), std::optional(Vec3f{1, 1, 1})}) {
         settings.image.background = other;
         EXPECT_NE(complain(settings).find("image.background = transparent"), std::string::npos);
     }
-    settings = make_settings(4, 32, 0);
+    settings = make_catcher_settings(4, 32, 0);
     settings.image.noise = 0.1f;
     EXPECT_NE(complain(settings).find("image.noise = 0"), std::string::npos);
 }
@@ -203,7 +203,7 @@ TEST(ShadowCatcher, needs_a_background_that_shines_through_and_a_fixed_number_of
 TEST(ShadowCatcher, layer_is_dark_without_one) {
     Scene scene = make_floor_scene();
     scene.objects[0].is_shadow_catcher = false;
-    RenderSettings settings = make_settings(4, 4, 0);
+    RenderSettings settings = make_catcher_settings(4, 4, 0);
     settings.image.layers = {"shadow"};
     const Image image = render(scene, settings).image;
     EXPECT_EQ(find_mean(image, "shadow.C") + find_mean(image, "shadow.U"), 0);

@@ -14,15 +14,15 @@ namespace relief {
 namespace {
 
 /// Cancels after `limit` queries.
-struct Canceller final : RenderObserver {
+struct LookCanceller final : RenderObserver {
     mutable std::atomic<int> looks{0};
     int limit;
-    explicit Canceller(int limit) : limit(limit) {}
+    explicit LookCanceller(int limit) : limit(limit) {}
     void on_progress(const Progress&) override {}
     bool is_cancelled() const override { return ++looks > limit; }
 };
 
-RenderSettings make_settings(size_t cache_bytes) {
+RenderSettings make_stop_settings(size_t cache_bytes) {
     RenderSettings settings;
     settings.image.width = 16, settings.image.height = 16; // one tile
     settings.image.spp = 2, settings.image.bounces = 0;
@@ -36,13 +36,13 @@ RenderSettings make_settings(size_t cache_bytes) {
 TEST(Cancellation, stops_before_the_next_tree_and_leaves_whole_samples) {
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
     for (const size_t cache_bytes : {size_t(256) << 20, size_t(0)}) {
-        const RenderSettings settings = make_settings(cache_bytes);
-        Canceller never(1 << 30);
+        const RenderSettings settings = make_stop_settings(cache_bytes);
+        LookCanceller never(1 << 30);
         const RenderResult whole = render(rock, settings, &never);
         ASSERT_TRUE(whole.is_complete);
         ASSERT_GT(whole.statistics.bottom_built, 200u) << "nothing to stop between";
         for (const int limit : {1, 20, never.looks / 2, never.looks - 3}) {
-            Canceller observer(limit);
+            LookCanceller observer(limit);
             const RenderResult result = render(rock, settings, &observer);
             EXPECT_FALSE(result.is_complete) << limit;
             EXPECT_LE(result.statistics.bottom_built, uint64_t(limit));
@@ -59,8 +59,8 @@ TEST(Cancellation, stops_before_the_next_tree_and_leaves_whole_samples) {
 
 TEST(Cancellation, ends_while_the_scene_is_prepared) {
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
-    RenderSettings settings = make_settings(size_t(256) << 20);
-    Canceller at_once(0);
+    RenderSettings settings = make_stop_settings(size_t(256) << 20);
+    LookCanceller at_once(0);
     const RenderResult result = render(rock, settings, &at_once);
     EXPECT_EQ(result.statistics.patches, 0u) << "the scene was prepared";
     EXPECT_LE(at_once.looks, 4);
@@ -77,7 +77,7 @@ TEST(Cancellation, after_the_last_sample_leaves_the_picture_complete) {
         bool is_cancelled() const override { return is_done; }
     };
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
-    const RenderSettings settings = make_settings(size_t(256) << 20);
+    const RenderSettings settings = make_stop_settings(size_t(256) << 20);
     Late observer;
     const RenderResult result = render(rock, settings, &observer);
     EXPECT_TRUE(result.is_complete);
@@ -103,14 +103,14 @@ SampleCounts count_samples(const Image& image) {
 
 TEST(Cancellation, tells_whether_every_pixel_has_a_sample) {
     const Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
-    RenderSettings settings = make_settings(size_t(256) << 20);
+    RenderSettings settings = make_stop_settings(size_t(256) << 20);
     settings.image.width = 96, settings.image.height = 64, settings.image.spp = 4; // several tiles
     settings.surface.level = 3;
-    Canceller never(1 << 30);
+    LookCanceller never(1 << 30);
     ASSERT_EQ(render(rock, settings, &never).whole_samples, 4);
     bool has_part = false, has_whole = false;
     for (int limit = 0; limit < never.looks; limit += std::max(1, never.looks / 40)) {
-        Canceller observer(limit);
+        LookCanceller observer(limit);
         const RenderResult result = render(rock, settings, &observer);
         const SampleCounts counts = count_samples(result.image);
         ASSERT_EQ(result.whole_samples, int(counts.least)) << limit;
@@ -123,7 +123,7 @@ TEST(Cancellation, tells_whether_every_pixel_has_a_sample) {
 
 TEST(Cancellation, of_an_update_tells_that_pixels_are_missing) {
     Scene rock = make_peer_scene("rock", 1, PeerWorld::constant);
-    RenderSettings settings = make_settings(size_t(256) << 20);
+    RenderSettings settings = make_stop_settings(size_t(256) << 20);
     settings.image.width = 96, settings.image.height = 64;
     settings.surface.level = 3;
     MapEdit edit;
@@ -133,7 +133,7 @@ TEST(Cancellation, of_an_update_tells_that_pixels_are_missing) {
     Session session(std::move(rock), settings);
     EXPECT_EQ(session.render().whole_samples, 2);
     session.edit(edit);
-    Canceller at_once(0);
+    LookCanceller at_once(0);
     const RenderResult result = session.render(&at_once);
     EXPECT_FALSE(result.is_complete);
     EXPECT_EQ(count_samples(result.image).least, 0);
@@ -154,7 +154,7 @@ TEST(Warnings, reach_the_observer_before_the_first_ray) {
     };
     Scene empty;
     Listener observer;
-    const RenderSettings settings = make_settings(0);
+    const RenderSettings settings = make_stop_settings(0);
     const RenderResult result = render(empty, settings, &observer);
     EXPECT_EQ(observer.calls, 1);
     EXPECT_EQ(observer.warnings, result.statistics.warnings);

@@ -21,7 +21,7 @@ struct Visits {
 };
 
 /// Camera, shadow and bounce rays.
-RenderSettings make_settings() {
+RenderSettings make_guard_settings() {
     RenderSettings settings;
     settings.image.width = 192, settings.image.height = 108;
     settings.image.spp = 2, settings.image.bounces = 2;
@@ -55,25 +55,25 @@ void check(const Scene& scene, RenderSettings settings, const Visits& kept) {
 }
 
 TEST(VisitGuard, rock_at_a_fixed_level) {
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_guard_settings();
     settings.surface.level = 4;
     check(make_peer_scene("rock", 1, PeerWorld::sky), settings, {179444, 149929, 376729, 394});
 }
 
 TEST(VisitGuard, close_up_of_bark) {
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_guard_settings();
     settings.image.width *= 8, settings.image.height *= 8;
     settings.image.crop = {640, 360, 832, 468};
     check(make_sample_scene("bark", Instancing::none), settings, {604226, 392362, 513946, 714});
 }
 
 TEST(VisitGuard, ear) {
-    check(make_sample_scene("ear", Instancing::none), make_settings(), {53345, 246124, 219741, 17});
+    check(make_sample_scene("ear", Instancing::none), make_guard_settings(), {53345, 246124, 219741, 17});
 }
 
 /// A part of the picture does, since the kernels without SIMD are slow.
 TEST(VisitGuard, counts_are_those_of_every_instruction_set) {
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_guard_settings();
     settings.image.crop = {64, 32, 128, 64};
     const Scene scene = make_peer_scene("rock", 1, PeerWorld::sky);
     const Visits best = count(scene, settings);

@@ -13,7 +13,7 @@
 namespace relief::bench {
 namespace {
 
-Value run_quick(Paper2Options options) {
+Value run_quick_paper2(Paper2Options options) {
     options.settings.device.threads = 1;
     return run_paper2(make_quick_options(options), [](const std::string&) {});
 }
@@ -21,7 +21,7 @@ Value run_quick(Paper2Options options) {
 TEST(Paper2, measures_every_walk_of_every_tree_with_every_kind_of_rays) {
     Paper2Options options;
     options.scenes = {"hall"};
-    const Value mesh = run_quick(options)["meshes"][0];
+    const Value mesh = run_quick_paper2(options)["meshes"][0];
     EXPECT_EQ(mesh["builds"].size(), tree_kinds().size());
     size_t walks = 0, heap_walks = 0;
     for (const TreeKind kind : tree_kinds()) {
@@ -44,7 +44,7 @@ TEST(Paper2, writes_a_mesh_of_the_user_by_its_name) {
     options.scenes = {};
     options.meshes = {make_structure_scene("body", MeshDetail::reduced)};
     options.meshes[0].meshes[0].name = "a <mesh>, \"more\".obj";
-    const Value result = run_quick(options);
+    const Value result = run_quick_paper2(options);
     EXPECT_EQ(read_json(write_json(result, 1))["meshes"][0]["mesh"], "a <mesh>, \"more\".obj");
     const std::string csv = write_csv(make_paper2_table(result));
     EXPECT_NE(csv.find("\n\"a <mesh>, \"\"more\"\".obj\",build,heap,,,,bytes,bytes,"), std::string::npos)
@@ -78,11 +78,11 @@ TEST(Paper2, goals_are_ratios_of_what_was_measured) {
 TEST(Paper2, refuses_what_has_no_triangles_or_no_name) {
     Paper2Options options;
     options.scenes = {"bunny"};
-    EXPECT_THROW(run_quick(options), Error);
+    EXPECT_THROW(run_quick_paper2(options), Error);
     options.scenes = {};
     options.meshes = {make_structure_scene("body", MeshDetail::reduced)};
     options.meshes[0].meshes[0] = {};
-    EXPECT_THROW(run_quick(options), Error);
+    EXPECT_THROW(run_quick_paper2(options), Error);
 }
 
 } // namespace

@@ -8,14 +8,14 @@
 namespace relief::bench {
 namespace {
 
-Value run_quick(const std::string& scene) {
+Value run_quick_paper3(const std::string& scene) {
     Paper3Options options;
     options.scenes = {scene};
     return run_paper3(make_quick_options(options), [](const std::string&) {});
 }
 
 TEST(Paper3, the_four_pairs_make_the_same_picture) {
-    const Value result = run_quick("hall");
+    const Value result = run_quick_paper3("hall");
     const Value& ways = result["scenes"][0]["ways"];
     ASSERT_EQ(ways.size(), 4u);
     for (const Value& way : ways) {
@@ -33,7 +33,7 @@ TEST(Paper3, the_four_pairs_make_the_same_picture) {
 }
 
 TEST(Paper3, what_is_refused_has_no_row) {
-    Value result = run_quick("body");
+    Value result = run_quick_paper3("body");
     const size_t rows = make_paper3_table(result).rows.size();
     ASSERT_EQ(rows, 4u * 11);
     result["scenes"][0]["ways"][1] = {{"structure", "kdtree"},
@@ -46,7 +46,7 @@ TEST(Paper3, what_is_refused_has_no_row) {
     EXPECT_EQ(write_csv(table).find("backtrack"), std::string::npos);
 }
 
-TEST(Paper3, knows_its_scenes) { EXPECT_THROW(run_quick("bunny"), Error); }
+TEST(Paper3, knows_its_scenes) { EXPECT_THROW(run_quick_paper3("bunny"), Error); }
 
 } // namespace
 } // namespace relief::bench

@@ -107,21 +107,21 @@ TEST(Peers, leaves_out_triangles_above_the_limit) {
     EXPECT_TRUE(scene["cold"].contains("grid"));
 }
 
-Value make_summary(double value) {
+Value make_single_summary(double value) {
     return {{"median", value}, {"lowest", value}, {"highest", value}, {"runs", 1}};
 }
 
 Value make_way(const char* program, const char* way, const char* call, int threads, const char* isa,
                double seconds) {
     Value result = {
-        {"program", program}, {"way", way}, {"threads", threads}, {"seconds", make_summary(seconds)}};
+        {"program", program}, {"way", way}, {"threads", threads}, {"seconds", make_single_summary(seconds)}};
     if (*call) result["call"] = call;
     if (*isa) result["isa"] = isa;
     return result;
 }
 
 /// What was reached, by the name of the goal.
-double find_reached(const Value& goals, const std::string& name) {
+double find_reached_by_name(const Value& goals, const std::string& name) {
     for (const Value& goal : goals)
         if (goal["what"] == name) return goal["reached"].get<double>();
     return -1;
@@ -137,9 +137,9 @@ TEST(Peers, computes_goals_from_measures) {
                                        {"at_edges", 2},
                                        {"grazing", 1}}});
     for (const auto& [way, seconds] : {std::pair("relief", 0.1), {"triangles", 9.0}, {"grid", 1.5}})
-        scene["cold"][way] = {{"first_primary_s", make_summary(seconds)},
-                              {"first_occlusion_s", make_summary(2 * seconds)},
-                              {"first_diffuse_s", make_summary(2 * seconds)}};
+        scene["cold"][way] = {{"first_primary_s", make_single_summary(seconds)},
+                              {"first_occlusion_s", make_single_summary(2 * seconds)},
+                              {"first_diffuse_s", make_single_summary(2 * seconds)}};
     scene["casts"] = Value::list({{{"rays", "occlusion"}, {"kind", "any"}, {"coherent", false}}});
     scene["casts"][0]["ways"] = Value::list({make_way("relief", "rays", "", 2, "avx512", 0.5),
                                              make_way("relief", "rays", "", 2, "avx2", 0.625),
@@ -148,14 +148,14 @@ TEST(Peers, computes_goals_from_measures) {
                                              make_way("embree", "triangles", "rtcOccluded1", 1, "", 7.0)});
     for (int depth : {1, 5}) scene["bounces"].push_back({{"depth", depth}, {"seconds_a_ray", 1e-6 * depth}});
     const Value goals = make_peers_goals({{"settings", {{"threads", 2}}}, {"scenes", Value::list({scene})}});
-    EXPECT_DOUBLE_EQ(find_reached(goals, "first image from cold, primary, best of Embree"), 15);
-    EXPECT_DOUBLE_EQ(find_reached(goals, "first image from cold, primary, Embree's triangles"), 90);
-    EXPECT_DOUBLE_EQ(find_reached(goals, "occlusion, rtcOccluded1 on triangles"), 2);
-    EXPECT_DOUBLE_EQ(find_reached(goals, "occlusion, rtcOccluded1 on grids"), -1);
-    EXPECT_DOUBLE_EQ(find_reached(goals, "threads, occlusion"), 2);
-    EXPECT_DOUBLE_EQ(find_reached(goals, "avx2 of avx512, occlusion"), 0.8);
-    EXPECT_DOUBLE_EQ(find_reached(goals, "hits that differ beyond rounding"), 0);
-    EXPECT_DOUBLE_EQ(find_reached(goals, "bounce 5 against bounce 1, time a ray"), 5);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "first image from cold, primary, best of Embree"), 15);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "first image from cold, primary, Embree's triangles"), 90);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "occlusion, rtcOccluded1 on triangles"), 2);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "occlusion, rtcOccluded1 on grids"), -1);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "threads, occlusion"), 2);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "avx2 of avx512, occlusion"), 0.8);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "hits that differ beyond rounding"), 0);
+    EXPECT_DOUBLE_EQ(find_reached_by_name(goals, "bounce 5 against bounce 1, time a ray"), 5);
     const std::string table = make_goal_table(goals);
     EXPECT_NE(table.find("| what | goal | rock, 5 |\n"), std::string::npos);
     EXPECT_NE(table.find("| bytes_a_patch | at most 64 bytes | **128** (0.5) |\n"), std::string::npos);

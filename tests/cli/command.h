@@ -12,6 +12,10 @@
 
 namespace relief::cli {
 
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 struct CommandResult {
     int exit_code = -1; ///< 128 + signal where a signal ended it
     std::string output, errors;

@@ -9,10 +9,6 @@
 namespace relief::cli {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 class Convert : public CommandTest {
   protected:
     /// Largest difference of two maps' values.

@@ -12,10 +12,6 @@
 namespace relief::cli {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 class Inspect : public CommandTest {
   protected:
     /// A copy of the bump under another name, changed.

@@ -6,10 +6,6 @@
 namespace relief::cli {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 /// A triangle with uvs, on a node that a skin would bend.
 constexpr const char* kSkinned =
     R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],

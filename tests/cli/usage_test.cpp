@@ -6,10 +6,6 @@
 namespace relief::cli {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 class Usage : public CommandTest {
   protected:
     /// Expects a usage error whose message holds `part`, and nothing on stdout.

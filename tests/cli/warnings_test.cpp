@@ -7,10 +7,6 @@
 namespace relief::cli {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 class Warnings : public CommandTest {
   protected:
     void SetUp() override {

@@ -57,13 +57,6 @@ TEST(AnalyticLights, two_lights_add_up_whatever_their_shares) {
     expect_irradiance(std::move(scene), 5 + 5 / 9.0 + 3, 256);
 }
 
-/// Form factor from a point to a parallel rectangle a x b at distance 1 with a corner right above it (Howell,
-/// A Catalog of Radiation Heat Transfer Configuration Factors, B-4).
-double corner_form_factor(double a, double b) {
-    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
-    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPi);
-}
-
 TEST(AnalyticLights, glowing_quad_has_its_form_factor) {
     for (float half : {0.2f, 1.0f, 3.0f})
         for (int bounces : {0, 1}) {

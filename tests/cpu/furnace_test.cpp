@@ -16,10 +16,6 @@ Scene make_furnace(const Material& material, SphereNormals normals) {
     return scene;
 }
 
-Mean render_mean(Scene scene, const RenderSettings& settings) {
-    return compute_covered_mean(render(std::move(scene), settings).image);
-}
-
 TEST(Furnace, white_matte_sphere_is_invisible) {
     for (SphereNormals normals : {SphereNormals::facets, SphereNormals::smooth}) {
         const Mean mean = render_mean(make_furnace(make_matte(1), normals), make_small_settings(32, 64, 4));

@@ -29,10 +29,6 @@ Material make_wall(const Vec3f& color) {
     return m;
 }
 
-Mean render_mean(Scene scene, const RenderSettings& settings) {
-    return compute_covered_mean(render(std::move(scene), settings).image);
-}
-
 /// Over the whole picture.
 Vec3<double> render_average(Scene scene, const RenderSettings& settings) {
     const Image image = render(std::move(scene), settings).image;

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <ostream>
 
 #include "base/parallel.h"
+#include "cpu/leak_rays.h"
 #include "cpu/tracer.h"
 #include "math/affine.h"
 #include "prepare/scene_edit.h"
@@ -21,14 +21,13 @@ namespace relief {
 
 namespace {
 
-constexpr uint64_t kDefaultRays = 10000000;
-constexpr uint64_t kBatch = 4096;
+constexpr uint64_t kRaysABatch = 4096;
 
 enum class Body { sphere, torus, creased };
 enum class Uvs { everywhere, missing_on_some_faces, in_two_tiles };
 enum class Placement { single, instances };
 
-struct Case {
+struct LeakCase {
     const char* name;
     Body body;
     DisplacementSpace space;
@@ -41,9 +40,9 @@ struct Case {
     Uvs uvs = Uvs::everywhere;
 };
 
-void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
+void PrintTo(const LeakCase& c, std::ostream* stream) { *stream << c.name; }
 
-const Case kCases[] = {
+const LeakCase kLeakCases[] = {
     {"sphere_object_level5", Body::sphere, DisplacementSpace::object, 5, Placement::single},
     {"sphere_object_auto", Body::sphere, DisplacementSpace::object, kAutoLevel, Placement::single},
     {"sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single},
@@ -95,11 +94,6 @@ const Case kCases[] = {
      Uvs::missing_on_some_faces},
 };
 
-uint64_t ray_count() {
-    const char* text = std::getenv("RELIEF_LEAK_RAYS");
-    return (text ? std::strtoull(text, nullptr, 10) : kDefaultRays) / std::size(kCases);
-}
-
 /// Small, fast, seeded by the batch, so that a leak can be found again.
 struct Random {
     uint64_t state;
@@ -135,7 +129,7 @@ Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t
     return transform_point(instance.world_from_object, a * (1 - s) + b * s);
 }
 
-Scene make_scene(const Case& c) {
+Scene make_scene(const LeakCase& c) {
     const bool is_smooth = c.scheme != SubdivisionScheme::none;
     Mesh mesh = c.body == Body::sphere    ? test::make_cube_sphere(is_smooth ? 2 : 4)
                 : c.body == Body::creased ? test::make_shape(test::Shape::tangled_cube)
@@ -169,7 +163,7 @@ Scene make_scene(const Case& c) {
 }
 
 /// Auto levels are worth a test only where patches differ and edges are coarser than their patches.
-void expect_mixed_levels(const PreparedScene& scene, const Case& c) {
+void expect_mixed_levels(const PreparedScene& scene, const LeakCase& c) {
     if (c.level != kAutoLevel) return;
     int lowest = kMaxLevel, highest = 0, coarse_edges = 0;
     for (const Instance& instance : scene.instances)
@@ -187,11 +181,11 @@ uint64_t count_leaks(const PreparedScene& prepared, const cpu::Tracer& tracer, B
                      uint64_t first_batch, uint64_t batches) {
     std::atomic<uint64_t> leaks{0};
     parallel_for("leaks", batches, 1, [&](size_t begin, size_t end) {
-        std::vector<cpu::TraceRay> rays(kBatch);
-        std::vector<cpu::TraceHit> hits(kBatch);
+        std::vector<cpu::TraceRay> rays(kRaysABatch);
+        std::vector<cpu::TraceHit> hits(kRaysABatch);
         for (size_t batch = first_batch + begin; batch < first_batch + end; ++batch) {
             Random random{batch * 0x9e3779b97f4a7c15ull + 1};
-            for (size_t k = 0; k < kBatch; ++k) {
+            for (size_t k = 0; k < kRaysABatch; ++k) {
                 const Instance& instance = prepared.instances[batch % prepared.instances.size()];
                 rays[k].lod_bias = uint32_t(k / 1024);
                 rays[k].origin = transform_point(instance.world_from_object, make_inner_point(body, random));
@@ -206,7 +200,7 @@ uint64_t count_leaks(const PreparedScene& prepared, const cpu::Tracer& tracer, B
                 }
             }
             tracer.closest_hits(rays, hits);
-            for (size_t k = 0; k < kBatch; ++k) {
+            for (size_t k = 0; k < kRaysABatch; ++k) {
                 if (hits[k].is_hit()) continue;
                 if (leaks++ < 5)
                     ADD_FAILURE() << "batch " << batch << " ray " << k << " bias " << rays[k].lod_bias;
@@ -224,29 +218,29 @@ RenderSettings make_leak_settings(int level) {
     return settings;
 }
 
-class LeakTest : public testing::TestWithParam<Case> {};
+class LeakTest : public testing::TestWithParam<LeakCase> {};
 
 TEST_P(LeakTest, every_ray_from_inside_hits) {
-    const Case& c = GetParam();
+    const LeakCase& c = GetParam();
     const RenderSettings settings = make_leak_settings(c.level);
     const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(c), settings);
     expect_mixed_levels(*prepared, c);
-    const uint64_t batches = (ray_count() + kBatch - 1) / kBatch;
+    const uint64_t batches = (test::leak_ray_count() / std::size(kLeakCases) + kRaysABatch - 1) / kRaysABatch;
     EXPECT_EQ(count_leaks(*prepared, cpu::Tracer(prepared, settings), c.body, 0, batches), 0u);
-    RecordProperty("rays", std::to_string(batches * kBatch));
+    RecordProperty("rays", std::to_string(batches * kRaysABatch));
 }
 
 /// Motion blur: bodies turn, stretch and change their relief, whose scale and texels are between two times'.
 TEST(MotionLeak, every_ray_from_inside_hits_at_any_time) {
     constexpr uint64_t kTimes = 100;
-    const Case c{"moving", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::instances};
+    const LeakCase c{"moving", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::instances};
     const Scene start = make_scene(c);
     const Texture& texels = *start.displacements[0].tiles[0].texture;
     const RenderSettings settings = make_leak_settings(kAutoLevel);
     SceneEditor editor(start, settings, SessionUse::scenes);
     cpu::Tracer tracer(editor.scene(), settings);
     Random random{7};
-    const uint64_t batches = (ray_count() * std::size(kCases) / kTimes + kBatch - 1) / kBatch;
+    const uint64_t batches = (test::leak_ray_count() / kTimes + kRaysABatch - 1) / kRaysABatch;
     uint64_t leaks = 0;
     for (uint64_t time = 0; time < kTimes; ++time) {
         Scene scene = start;
@@ -268,11 +262,11 @@ TEST(MotionLeak, every_ray_from_inside_hits_at_any_time) {
         leaks += count_leaks(*editor.scene(), tracer, c.body, time * batches, batches);
     }
     EXPECT_EQ(leaks, 0u);
-    RecordProperty("rays", std::to_string(kTimes * batches * kBatch));
+    RecordProperty("rays", std::to_string(kTimes * batches * kRaysABatch));
 }
 
-INSTANTIATE_TEST_SUITE_P(Bodies, LeakTest, testing::ValuesIn(kCases),
-                         [](const testing::TestParamInfo<Case>& info) {
+INSTANTIATE_TEST_SUITE_P(Bodies, LeakTest, testing::ValuesIn(kLeakCases),
+                         [](const testing::TestParamInfo<LeakCase>& info) {
                              return std::string(info.param.name);
                          });
 

@@ -61,7 +61,7 @@ Material make_mapped(std::shared_ptr<const Texture> texture) {
 }
 
 /// A floor of side 2 seen from far above, lit by a sun without a disc; +x is right, +z down.
-Scene make_floor_scene(const Material& material) {
+Scene make_mapped_floor(const Material& material) {
     Scene scene;
     add_object(scene, make_floor(1), material);
     scene.camera.from = {0, 20, 0}, scene.camera.up = {0, 0, -1};
@@ -114,7 +114,7 @@ TEST(NormalMaps, that_are_flat_or_have_scale_0_change_nothing) {
              none = make_mapped(make_normal_texture({0.7f, -0.3f, 0.5f}));
     none.normal_scale = 0;
     const auto render_body = [](const Material& material, bool is_displaced) {
-        Scene scene = make_floor_scene(material);
+        Scene scene = make_mapped_floor(material);
         scene.objects.clear(), scene.meshes.clear(), scene.materials.clear();
         add_object(scene, test::make_torus(6, 9), material);
         scene.objects.back().world_from_object =
@@ -138,7 +138,7 @@ TEST(NormalMaps, that_are_flat_or_have_scale_0_change_nothing) {
 
 TEST(NormalMaps, of_one_direction_tilt_a_plane_by_it) {
     const Vec3f n{0.3f, 0.2f, 0.9f}; // the floor's u is +x, its v is -z
-    Scene scene = make_floor_scene(make_mapped(make_normal_texture(n)));
+    Scene scene = make_mapped_floor(make_mapped(make_normal_texture(n)));
     expect_normal(render_layers(scene), {n.x, n.z, -n.y});
     scene.materials[0].normal_flip_y = true;
     expect_normal(render_layers(scene), {n.x, n.z, n.y});
@@ -148,7 +148,7 @@ TEST(NormalMaps, of_one_direction_tilt_a_plane_by_it) {
 
 TEST(NormalMaps, follow_the_uvs_and_the_placing_of_an_object) {
     const Vec3f n{0.3f, 0.2f, 0.9f};
-    const Scene floor = make_floor_scene(make_mapped(make_normal_texture(n)));
+    const Scene floor = make_mapped_floor(make_mapped(make_normal_texture(n)));
     Scene scene = floor;
     scene.objects[0].world_from_object = make_scale({-1, 1, 1});
     expect_normal(render_layers(scene), {-n.x, n.z, -n.y});
@@ -186,11 +186,11 @@ std::pair<double, double> measure_distances(const Image& a, const Image& b) {
 }
 
 TEST(NormalMaps, shade_bumps_as_a_height_map_of_them_does) {
-    Scene displaced = make_floor_scene(make_matte(0.8f));
+    Scene displaced = make_mapped_floor(make_matte(0.8f));
     displaced.displacements.push_back(make_heights(bumps));
     displaced.objects[0].displacement = 0;
     const Image expected = render_layers(displaced);
-    Scene mapped = make_floor_scene(make_mapped(make_slopes(bumps)));
+    Scene mapped = make_mapped_floor(make_mapped(make_slopes(bumps)));
     const auto [normals, colors] = measure_distances(expected, render_layers(mapped));
     EXPECT_LT(normals, 0.01);
     EXPECT_LT(colors, 0.005);
@@ -199,7 +199,7 @@ TEST(NormalMaps, shade_bumps_as_a_height_map_of_them_does) {
 }
 
 TEST(NormalMaps, lie_on_top_of_a_displacement) {
-    Scene whole = make_floor_scene(make_matte(0.8f)), split = whole;
+    Scene whole = make_mapped_floor(make_matte(0.8f)), split = whole;
     whole.displacements.push_back(make_heights([](float u, float v) { return hills(u, v) + bumps(u, v); }));
     split.displacements.push_back(make_heights(hills));
     split.materials[0] = make_mapped(make_slopes(bumps));
@@ -214,7 +214,7 @@ TEST(NormalMaps, lie_on_top_of_a_displacement) {
 }
 
 TEST(NormalMaps, are_the_same_on_a_tessellated_surface) {
-    Scene scene = make_floor_scene(make_mapped(make_normal_texture({0.4f, -0.5f, 0.8f})));
+    Scene scene = make_mapped_floor(make_mapped(make_normal_texture({0.4f, -0.5f, 0.8f})));
     scene.materials.back().normal_flip_y = true;
     scene.displacements.push_back(make_heights([](float u, float v) { return 3 * hills(u, v); }));
     scene.objects[0].displacement = 0;
@@ -232,7 +232,7 @@ TEST(NormalMaps, keep_their_frame_where_a_vector_map_folds_the_surface_over) {
                               const float r = 2 / 2.6f; // the floor is 2 long
                               return Vec3f{r * std::sin(turn(u)) - 2 * u, 0, r * (1 - std::cos(turn(u)))};
                           })});
-    Scene scene = make_floor_scene(make_mapped(make_normal_texture({0, 0.5f, 0.8f})));
+    Scene scene = make_mapped_floor(make_mapped(make_normal_texture({0, 0.5f, 0.8f})));
     scene.displacements.push_back(roll);
     scene.objects[0].displacement = 0;
     scene.camera.from = {-20, 1, 0}, scene.camera.to = {0, 1, 0}, scene.camera.up = {0, 1, 0};
@@ -272,7 +272,7 @@ TEST(NormalMaps, in_a_furnace_add_no_light_and_make_no_black_pixels) {
 TEST(NormalMaps, that_lean_away_from_the_viewer_still_reflect) {
     Material mirror = make_mapped(make_normal_texture({0, 0.9f, 0.3f}));
     mirror.base_color = {1, 1, 1}, mirror.metallic = 1, mirror.roughness = 0;
-    Scene scene = make_floor_scene(mirror);
+    Scene scene = make_mapped_floor(mirror);
     scene.lights.clear(), scene.environment = Environment{};
     scene.camera.from = {0, 5, 20};
     const size_t count = visit_covered(render_layers(scene, 1, 16), [](const Vec3f&, const Vec3f& color, int,

@@ -16,7 +16,7 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr size_t kWidth = 16;
+constexpr size_t kPacketWidth = 16;
 
 enum class Kind { around_axes, along_axes, with_a_nan_in_a_ray, with_a_nan_reach };
 
@@ -29,16 +29,16 @@ std::vector<TraceRay> make_packets(Kind kind, uint32_t count) {
     std::vector<TraceRay> rays;
     for (uint32_t packet = 0; packet < count; ++packet) {
         const Vec3f direction = normalize(directions[packet % std::size(directions)]);
-        for (uint32_t lane = 0; lane < kWidth; ++lane) {
+        for (uint32_t lane = 0; lane < kPacketWidth; ++lane) {
             const auto draw = [&](float size) {
                 return Vec3f{normal(random), normal(random), normal(random)} * size;
             };
             TraceRay ray;
             ray.direction = kind == Kind::along_axes ? direction : direction + draw(0.05f);
             ray.origin = draw(0.5f) - direction * 4.0f;
-            if (lane == packet % kWidth && kind == Kind::with_a_nan_in_a_ray)
+            if (lane == packet % kPacketWidth && kind == Kind::with_a_nan_in_a_ray)
                 set_component(ray.origin, int(packet % 3), NAN);
-            if (lane == packet % kWidth && kind == Kind::with_a_nan_reach)
+            if (lane == packet % kPacketWidth && kind == Kind::with_a_nan_reach)
                 (packet % 2 == 0 ? ray.t_min : ray.t_max) = NAN;
             rays.push_back(ray);
         }
@@ -107,7 +107,7 @@ TEST(Packets, rays_within_the_faces_of_boxes_meet_what_lies_there) {
                                                                            DisplacementSpace::object)),
         settings);
     std::mt19937 random(3);
-    std::vector<TraceRay> rays(kWidth * 64);
+    std::vector<TraceRay> rays(kPacketWidth * 64);
     for (TraceRay& ray : rays) {
         const auto draw = [&] { return float(random() % kPlaces) / float(kPlaces - 1); };
         ray.origin = {draw(), draw(), 1};

@@ -36,7 +36,7 @@ std::vector<cpu::TraceRay> make_mixed_rays(uint32_t count) {
     return rays;
 }
 
-std::shared_ptr<const PreparedScene> prepare_torus(RenderSettings& settings) {
+std::shared_ptr<const PreparedScene> prepare_fine_torus(RenderSettings& settings) {
     settings.surface.level = 7;
     const Displacement displacement =
         test::make_displacement(test::make_random_map(64, 64, 0.1f, 5), DisplacementSpace::tangent);
@@ -65,7 +65,7 @@ class PatchTreeCache : public testing::TestWithParam<size_t> {};
 
 TEST_P(PatchTreeCache, gives_the_same_hits_to_many_threads_that_evict_each_others_trees) {
     RenderSettings settings;
-    const auto prepared = prepare_torus(settings);
+    const auto prepared = prepare_fine_torus(settings);
     const std::vector<cpu::TraceRay> rays = make_mixed_rays(20 * kBatch);
     settings.surface.cache_bytes = 0;
     std::vector<cpu::TraceHit> expected(rays.size());
@@ -91,7 +91,7 @@ TEST_P(PatchTreeCache, gives_the_same_hits_to_many_threads_that_evict_each_other
 /// Asks for the trees of `count` tiles in turn, a few rounds, of a cache within the limits.
 cpu::TraceCounters visit_tiles(cpu::CacheLimits limits, uint32_t count, int rounds, size_t* peak = nullptr) {
     RenderSettings settings;
-    const auto prepared = prepare_torus(settings);
+    const auto prepared = prepare_fine_torus(settings);
     cpu::PatchTreeCache cache(limits, cpu::find_kernels(Isa::best)->build_tree);
     for (int round = 0; round < rounds; ++round)
         for (uint32_t k = 0; k < count; ++k) {
@@ -120,7 +120,7 @@ TEST(PatchTreeCacheLimits, a_cache_grows_until_no_tree_is_built_again) {
 
 TEST(PatchTreeCacheLimits, many_small_trees_find_slots_while_there_is_room) {
     RenderSettings settings;
-    const auto prepared = prepare_torus(settings);
+    const auto prepared = prepare_fine_torus(settings);
     const auto count_rebuilt = [&](size_t patch_count) {
         constexpr size_t kBytes = size_t(1) << 20;
         cpu::PatchTreeCache cache({kBytes, kBytes, patch_count}, cpu::find_kernels(Isa::best)->build_tree);

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <ostream>
 
+#include "cpu/leak_rays.h"
 #include "math/affine.h"
 #include "support/bodies.h"
 #include "support/shading_scenes.h"
@@ -15,7 +15,6 @@
 namespace relief {
 namespace {
 
-constexpr uint64_t kDefaultRays = 10000000;
 constexpr int kSize = 64;
 /// A path of four bounces inside a closed body: a camera ray, four bounces, a shadow ray at each of five
 /// vertices.
@@ -34,26 +33,26 @@ Material make_cut_out(float opacity) {
     return m;
 }
 
-Material make_glass(float roughness, bool is_thin_walled = false) {
+Material make_glass_walls(float roughness, bool is_thin_walled = false) {
     Material m;
     m.roughness = roughness, m.transmission_weight = 1, m.is_thin_walled = is_thin_walled;
     return m;
 }
 
-struct Case {
+struct PathLeakCase {
     const char* name;
     Material shell;
     Material inner;
 };
 
-void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
+void PrintTo(const PathLeakCase& c, std::ostream* stream) { *stream << c.name; }
 
-const Case kCases[] = {
+const PathLeakCase kPathLeakCases[] = {
     {"coat", make_coated(), make_coated()},
     {"cut_outs", make_cut_out(1), make_cut_out(0.5f)},
-    {"clear_glass", make_matte(0.8f), make_glass(0)},
-    {"rough_glass", make_matte(0.8f), make_glass(0.3f)},
-    {"thin_walls", make_cut_out(1), make_glass(0, true)},
+    {"clear_glass", make_matte(0.8f), make_glass_walls(0)},
+    {"rough_glass", make_matte(0.8f), make_glass_walls(0.3f)},
+    {"thin_walls", make_cut_out(1), make_glass_walls(0, true)},
 };
 
 Displacement make_bumps(DisplacementSpace space) {
@@ -62,7 +61,7 @@ Displacement make_bumps(DisplacementSpace space) {
 
 /// A closed shell, a body in it, the camera between both and near the shell, so that levels differ; light
 /// around all of it.
-Scene make_shell_scene(const Case& c) {
+Scene make_shell_scene(const PathLeakCase& c) {
     Scene scene = test::make_body_scene(test::make_cube_sphere(4), make_bumps(DisplacementSpace::tangent));
     scene.displacements.push_back(make_bumps(DisplacementSpace::object));
     scene.materials = {c.shell, c.inner};
@@ -77,23 +76,19 @@ Scene make_shell_scene(const Case& c) {
     return scene;
 }
 
-uint64_t ray_count() {
-    const char* text = std::getenv("RELIEF_LEAK_RAYS");
-    return (text ? std::strtoull(text, nullptr, 10) : kDefaultRays) / std::size(kCases);
-}
-
 RenderSettings make_settings(uint64_t rays) {
     RenderSettings settings = make_small_settings(kSize, int(rays / (kSize * kSize * kRaysAPath)) + 1, 4);
     settings.surface.pixel_error = 3; // coarse enough that the view decides the levels
     return settings;
 }
 
-class PathLeakTest : public testing::TestWithParam<Case> {};
+class PathLeakTest : public testing::TestWithParam<PathLeakCase> {};
 
 TEST_P(PathLeakTest, no_path_from_inside_meets_the_light_outside) {
-    const RenderResult result = render(make_shell_scene(GetParam()), make_settings(ray_count()));
+    const uint64_t rays = test::leak_ray_count() / std::size(kPathLeakCases);
+    const RenderResult result = render(make_shell_scene(GetParam()), make_settings(rays));
     const Statistics& s = result.statistics;
-    EXPECT_GE(s.camera_rays + s.shadow_rays + s.bounce_rays, ray_count() / 2);
+    EXPECT_GE(s.camera_rays + s.shadow_rays + s.bounce_rays, rays / 2);
     const Image& image = result.image;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
@@ -116,7 +111,7 @@ TEST_P(PathLeakTest, light_is_seen_through_a_hole_of_one_face) {
 
 /// One sample a pixel of the body alone in a white furnace: what a single path can bring.
 TEST_P(PathLeakTest, no_path_in_a_furnace_brings_much_more_than_its_light) {
-    const Case& c = GetParam();
+    const PathLeakCase& c = GetParam();
     Scene scene = make_shell_scene(c);
     scene.objects.erase(scene.objects.begin());
     scene.lights.clear();
@@ -135,8 +130,8 @@ TEST_P(PathLeakTest, no_path_in_a_furnace_brings_much_more_than_its_light) {
     EXPECT_LE(highest, 4.0f);
 }
 
-INSTANTIATE_TEST_SUITE_P(Materials, PathLeakTest, testing::ValuesIn(kCases),
-                         [](const testing::TestParamInfo<Case>& info) {
+INSTANTIATE_TEST_SUITE_P(Materials, PathLeakTest, testing::ValuesIn(kPathLeakCases),
+                         [](const testing::TestParamInfo<PathLeakCase>& info) {
                              return std::string(info.param.name);
                          });
 

@@ -44,7 +44,7 @@ class Numbers {
     uint32_t count_ = 0;
 };
 
-Environment make_sky(uint32_t width, uint32_t height, uint32_t channels, bool has_halves) {
+Environment make_sky_texture(uint32_t width, uint32_t height, uint32_t channels, bool has_halves) {
     auto texture = std::make_shared<Texture>();
     texture->width = width, texture->height = height, texture->channel_count = channels;
     for (uint32_t k = 0; k < 4 * width * height; ++k) {
@@ -97,11 +97,11 @@ void expect_kernels_of(const cpu::EnvironmentLight& light) {
 TEST(EnvironmentKernels, do_many_at_once_what_the_environment_does_one_by_one) {
     for (const bool has_halves : {false, true}) {
         for (const uint32_t width : {1u, 2u, 7u, 300u})
-            expect_kernels_of(cpu::EnvironmentLight(make_sky(width, 1 + width / 2, 3, has_halves)));
-        expect_kernels_of(cpu::EnvironmentLight(make_sky(64, 32, 1, has_halves)));
+            expect_kernels_of(cpu::EnvironmentLight(make_sky_texture(width, 1 + width / 2, 3, has_halves)));
+        expect_kernels_of(cpu::EnvironmentLight(make_sky_texture(64, 32, 1, has_halves)));
     }
     // Cells of several texels; a bright texel, dark rows and columns.
-    Environment large = make_sky(1500, 750, 3, false);
+    Environment large = make_sky_texture(1500, 750, 3, false);
     Texture lights = *large.texture;
     for (size_t k = 0; k < lights.floats.size(); ++k)
         if (k / 6000 % 3 == 0 || k / 4 % 5 == 0) lights.floats[k] = 0;
@@ -114,7 +114,7 @@ TEST(EnvironmentKernels, do_many_at_once_what_the_environment_does_one_by_one) {
     expect_kernels_of(cpu::EnvironmentLight(plain));
 }
 
-struct Case {
+struct KernelCase {
     cpu::SurfacePoint point;
     cpu::TraceRay ray;
     scalar::BsdfParameters material;
@@ -163,11 +163,11 @@ MaterialGlass make_glass() {
 
 /// Every kind of material in one batch, points seen from both sides and at grazing angles, lights behind the
 /// surface and none at all.
-std::vector<Case> make_cases() {
+std::vector<KernelCase> make_cases() {
     Numbers numbers;
-    std::vector<Case> cases(16 * 40);
+    std::vector<KernelCase> cases(16 * 40);
     for (size_t k = 0; k < cases.size(); ++k) {
-        Case& c = cases[k];
+        KernelCase& c = cases[k];
         c.point.position = numbers.direction() * 10.0f;
         c.point.geometric_normal = numbers.direction();
         c.point.shading_normal = normalize(c.point.geometric_normal + numbers.direction() * numbers.next());
@@ -202,7 +202,7 @@ std::vector<Case> make_cases() {
 
 using cpu::get_lane;
 
-void set_lane(const Case& c, size_t lane, cpu::VertexLanes& lanes) {
+void set_lane(const KernelCase& c, size_t lane, cpu::VertexLanes& lanes) {
     for (int axis = 0; axis < 3; ++axis) {
         lanes.base_color[axis][lane] = get_component(c.material.base_color, axis);
         lanes.light_direction[axis][lane] = get_component(c.light, axis);
@@ -227,14 +227,14 @@ struct CaseMaterials {
     MaterialGlass glass = make_glass();
 };
 
-bool has_tangent(const Case& c, const CaseMaterials& materials) {
+bool has_tangent(const KernelCase& c, const CaseMaterials& materials) {
     if (c.glass != kNoIndex) return materials.glass.records[c.glass].anisotropy > 0;
     return c.layers != kNoIndex && materials.layers.records[c.layers].azimuth_scale > 0;
 }
 
 /// The BSDF of a case, with or without layers, or of glass.
 struct CaseBsdf {
-    CaseBsdf(const Case& c, const CaseMaterials& materials, const Vec3f& viewer, bool is_inside)
+    CaseBsdf(const KernelCase& c, const CaseMaterials& materials, const Vec3f& viewer, bool is_inside)
         : wo(viewer),
           has_layers(c.layers != kNoIndex),
           is_glass(c.glass != kNoIndex),
@@ -279,7 +279,8 @@ struct CaseBsdf {
 };
 
 /// The same with the formulas for one.
-void expect_lane(const Case& c, const CaseMaterials& materials, const cpu::VertexLanes& lanes, size_t lane) {
+void expect_lane(const KernelCase& c, const CaseMaterials& materials, const cpu::VertexLanes& lanes,
+                 size_t lane) {
     const Vec3f wo = -c.ray.direction;
     const bool is_behind = dot(c.point.geometric_normal, wo) < 0;
     const Vec3f geometric = is_behind ? -c.point.geometric_normal : c.point.geometric_normal;
@@ -327,7 +328,7 @@ void expect_lane(const Case& c, const CaseMaterials& materials, const cpu::Verte
 }
 
 TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_one) {
-    const std::vector<Case> cases = make_cases();
+    const std::vector<KernelCase> cases = make_cases();
     const CaseMaterials materials;
     for (const std::string& isa : available_isas()) {
         uint32_t lit = 0, going = 0;
@@ -339,7 +340,7 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
             cpu::VertexLanes lanes;
             std::memset(&lanes, 0xff, sizeof lanes); // NaN in the lanes beyond
             for (size_t lane = 0; lane < count; ++lane) {
-                const Case& c = cases[first + lane];
+                const KernelCase& c = cases[first + lane];
                 points[lane] = c.point, rays[lane] = c.ray, picks[lane] = c.pick, pairs[lane] = c.u;
                 set_lane(c, lane, lanes);
             }
@@ -361,7 +362,7 @@ TEST(ReflectionKernels, reflect_at_sixteen_vertices_what_the_formulas_say_for_on
 }
 
 TEST(ReflectionKernels, let_no_path_go_on_without_random_numbers) {
-    const Case c = make_cases()[1];
+    const KernelCase c = make_cases()[1];
     for (const std::string& isa : available_isas()) {
         cpu::VertexLanes lanes{};
         set_lane(c, 0, lanes);
@@ -379,7 +380,7 @@ Scene make_lit_scene() {
     glowing.emission = {300, 300, 300};
     add_object(scene, make_floor(1), glowing);
     scene.objects.back().world_from_object.translation = {2, 1, 0};
-    scene.environment = make_sky(64, 32, 3, false);
+    scene.environment = make_sky_texture(64, 32, 3, false);
     scene.lights.resize(3);
     scene.lights[0].strength = 400;
     for (int k = 1; k < 3; ++k) {

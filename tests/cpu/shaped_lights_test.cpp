@@ -8,13 +8,6 @@
 namespace relief {
 namespace {
 
-/// Form factor from a point to a parallel rectangle a x b at distance 1 with a corner right above it (Howell,
-/// A Catalog of Radiation Heat Transfer Configuration Factors, B-4).
-double corner_form_factor(double a, double b) {
-    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
-    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPi);
-}
-
 Light make_shaped(LightType type, const Vec3f& position, const Vec3f& direction) {
     Light light;
     light.type = type;

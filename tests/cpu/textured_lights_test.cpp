@@ -23,12 +23,6 @@ Light make_light(LightType type, const Vec3f& position, const Vec3f& direction) 
     return light;
 }
 
-/// Form factor from a point to a parallel rectangle a x b at distance 1 with a corner right above it.
-double corner_form_factor(double a, double b) {
-    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
-    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPi);
-}
-
 TEST(TexturedLights, shine_where_their_texture_is_bright) {
     for (const bool is_left : {true, false})
         for (const int bounces : {0, 1}) {

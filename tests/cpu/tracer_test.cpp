@@ -95,7 +95,7 @@ std::vector<cpu::TraceRay> make_rays(uint32_t count, uint32_t bias, uint32_t see
     return rays;
 }
 
-struct Case {
+struct TracerCase {
     const char* name;
     DisplacementSpace space;
     int level;
@@ -104,12 +104,12 @@ struct Case {
     MapFilter filter = MapFilter::none;
 };
 
-void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
+void PrintTo(const TracerCase& c, std::ostream* stream) { *stream << c.name; }
 
-class TracerTest : public testing::TestWithParam<Case> {};
+class TracerTest : public testing::TestWithParam<TracerCase> {};
 
 TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
-    const Case& c = GetParam();
+    const TracerCase& c = GetParam();
     RenderSettings settings;
     settings.surface.level = c.level;
     settings.image.height = 60;
@@ -149,22 +149,27 @@ TEST_P(TracerTest, gives_the_hits_of_brute_force_on_every_instruction_set) {
 
 INSTANTIATE_TEST_SUITE_P(
     Levels, TracerTest,
-    testing::Values(
-        Case{"object0", DisplacementSpace::object, 0, 0}, Case{"object1", DisplacementSpace::object, 1, 0},
-        Case{"object2", DisplacementSpace::object, 2, 0}, Case{"tangent3", DisplacementSpace::tangent, 3, 0},
-        Case{"object4", DisplacementSpace::object, 4, 0}, Case{"tangent5", DisplacementSpace::tangent, 5, 0},
-        Case{"object6", DisplacementSpace::object, 6, 0}, Case{"object7", DisplacementSpace::object, 7, 0},
-        Case{"tangent8", DisplacementSpace::tangent, 8, 0},
-        Case{"tangent7_bias2", DisplacementSpace::tangent, 7, 2},
-        Case{"tangent_auto", DisplacementSpace::tangent, kAutoLevel, 0},
-        Case{"object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1},
-        Case{"smooth_tangent2", DisplacementSpace::tangent, 2, 0, SubdivisionScheme::catmark},
-        Case{"smooth_object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1,
-             SubdivisionScheme::catmark},
-        Case{"cubic_tangent5", DisplacementSpace::tangent, 5, 0, SubdivisionScheme::none, MapFilter::cubic},
-        Case{"bspline_object7_bias2", DisplacementSpace::object, 7, 2, SubdivisionScheme::catmark,
-             MapFilter::bspline}),
-    [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+    testing::Values(TracerCase{"object0", DisplacementSpace::object, 0, 0},
+                    TracerCase{"object1", DisplacementSpace::object, 1, 0},
+                    TracerCase{"object2", DisplacementSpace::object, 2, 0},
+                    TracerCase{"tangent3", DisplacementSpace::tangent, 3, 0},
+                    TracerCase{"object4", DisplacementSpace::object, 4, 0},
+                    TracerCase{"tangent5", DisplacementSpace::tangent, 5, 0},
+                    TracerCase{"object6", DisplacementSpace::object, 6, 0},
+                    TracerCase{"object7", DisplacementSpace::object, 7, 0},
+                    TracerCase{"tangent8", DisplacementSpace::tangent, 8, 0},
+                    TracerCase{"tangent7_bias2", DisplacementSpace::tangent, 7, 2},
+                    TracerCase{"tangent_auto", DisplacementSpace::tangent, kAutoLevel, 0},
+                    TracerCase{"object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1},
+                    TracerCase{"smooth_tangent2", DisplacementSpace::tangent, 2, 0,
+                               SubdivisionScheme::catmark},
+                    TracerCase{"smooth_object_auto_bias1", DisplacementSpace::object, kAutoLevel, 1,
+                               SubdivisionScheme::catmark},
+                    TracerCase{"cubic_tangent5", DisplacementSpace::tangent, 5, 0, SubdivisionScheme::none,
+                               MapFilter::cubic},
+                    TracerCase{"bspline_object7_bias2", DisplacementSpace::object, 7, 2,
+                               SubdivisionScheme::catmark, MapFilter::bspline}),
+    [](const testing::TestParamInfo<TracerCase>& info) { return std::string(info.param.name); });
 
 std::shared_ptr<const PreparedScene> prepare_torus(const RenderSettings& settings) {
     return prepare_scene(test::make_body_scene(test::make_torus(6, 9),

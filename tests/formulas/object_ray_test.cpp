@@ -12,7 +12,7 @@ namespace relief {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 
 Vec3f draw(std::mt19937& random) {
     std::normal_distribution<float> normal;
@@ -38,7 +38,7 @@ TEST(object_ray, meets_every_box_around_a_point_of_it) {
         const Vec3f upper{widen(std::max(p.x, p.x + spread.x), 1), widen(std::max(p.y, p.y + spread.y), 1),
                           widen(std::max(p.z, p.z + spread.z), 1)};
         const scalar::ObjectRay ray = scalar::make_object_ray(origin, direction);
-        const scalar::BoxInterval interval = scalar::cross_box(ray, lower, upper, 0, kInfinity);
+        const scalar::BoxInterval interval = scalar::cross_box(ray, lower, upper, 0, kNoEnd);
         ASSERT_TRUE(scalar::is_box_met(interval)) << k;
         EXPECT_LE(interval.entry, t * 1.00001f + 1e-5f);
     }
@@ -46,9 +46,9 @@ TEST(object_ray, meets_every_box_around_a_point_of_it) {
 
 TEST(object_ray, touches_the_face_of_a_box_that_it_runs_along) {
     const scalar::ObjectRay ray = scalar::make_object_ray({1, 0.5f, -2}, {0, 0, 1});
-    EXPECT_TRUE(scalar::is_box_met(scalar::cross_box(ray, {0, 0, 0}, {1, 1, 1}, 0, kInfinity)));
-    EXPECT_TRUE(scalar::is_box_met(scalar::cross_box(ray, {1, 0, 0}, {2, 1, 1}, 0, kInfinity)));
-    EXPECT_FALSE(scalar::is_box_met(scalar::cross_box(ray, {1.01f, 0, 0}, {2, 1, 1}, 0, kInfinity)));
+    EXPECT_TRUE(scalar::is_box_met(scalar::cross_box(ray, {0, 0, 0}, {1, 1, 1}, 0, kNoEnd)));
+    EXPECT_TRUE(scalar::is_box_met(scalar::cross_box(ray, {1, 0, 0}, {2, 1, 1}, 0, kNoEnd)));
+    EXPECT_FALSE(scalar::is_box_met(scalar::cross_box(ray, {1.01f, 0, 0}, {2, 1, 1}, 0, kNoEnd)));
 }
 
 TEST(object_ray, finds_one_of_the_triangles_around_a_vertex_or_edge) {
@@ -64,8 +64,8 @@ TEST(object_ray, finds_one_of_the_triangles_around_a_vertex_or_edge) {
         for (int side = 0; side < 4; ++side) {
             const scalar::TriangleHit hit = scalar::intersect_sheared(
                 ray, scalar::shear_vertex(ray, {}), scalar::shear_vertex(ray, rim[side]),
-                scalar::shear_vertex(ray, rim[(side + 1) % 4]), 0, kInfinity);
-            if (hit.t == kInfinity) continue;
+                scalar::shear_vertex(ray, rim[(side + 1) % 4]), 0, kNoEnd);
+            if (hit.t == kNoEnd) continue;
             ++hits;
             EXPECT_NEAR(hit.t, 1, 1e-4f);
         }
@@ -85,7 +85,7 @@ TEST(object_ray, gives_the_weights_of_the_corners) {
         const scalar::ObjectRay ray = scalar::make_object_ray(origin, p - origin);
         const scalar::TriangleHit hit =
             scalar::intersect_sheared(ray, scalar::shear_vertex(ray, a), scalar::shear_vertex(ray, b),
-                                      scalar::shear_vertex(ray, c), 0, kInfinity);
+                                      scalar::shear_vertex(ray, c), 0, kNoEnd);
         ASSERT_NEAR(hit.t, 1, 1e-4f) << k;
         EXPECT_NEAR(hit.weight_b, wb, 1e-3f);
         EXPECT_NEAR(hit.weight_c, wc, 1e-3f);

@@ -33,10 +33,10 @@ TEST(ToneMap, fades_bright_colours_towards_white_and_keeps_dark_ones) {
 
 TEST(ToneMap, survives_what_is_no_colour) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kInfinite = std::numeric_limits<float>::infinity();
     EXPECT_EQ(map_grey(-1).x, 0);
     EXPECT_EQ(map_grey(kNan).y, 0);
-    EXPECT_EQ(map_grey(kInfinity).z, 1);
+    EXPECT_EQ(map_grey(kInfinite).z, 1);
     EXPECT_LT(scalar::tone_map_filmic(Vec3f{kNan, 0.18f, 0.18f}).x, 0.18f);
 }
 

@@ -11,13 +11,13 @@
 namespace relief::test {
 namespace {
 
-constexpr uint32_t kSize = 64;
+constexpr uint32_t kMapSize = 64;
 
 Inspection inspect(const Displacement& map) { return inspect_map(map, MapMeaning::unknown); }
 
 /// Stored values from displacements; `type` says what the file claims to hold.
 std::shared_ptr<Texture> make_coded(SampleType type, float scale, float midlevel) {
-    auto texture = make_sculpt_texture(kSize);
+    auto texture = make_sculpt_texture(kMapSize);
     texture->source_type = type;
     for (size_t i = 0; i < texture->floats.size(); ++i)
         if (i % 4 != 3) texture->floats[i] = texture->floats[i] / scale + midlevel;
@@ -25,7 +25,7 @@ std::shared_ptr<Texture> make_coded(SampleType type, float scale, float midlevel
 }
 
 TEST(MapMistakes, a_good_float_map_shows_none) {
-    const Inspection inspection = inspect(make_map(make_sculpt_texture(kSize)));
+    const Inspection inspection = inspect(make_map(make_sculpt_texture(kMapSize)));
     EXPECT_EQ(count_severe(inspection), 0u);
     EXPECT_TRUE(has_code(inspection, "I-FOLD"));
 }
@@ -77,17 +77,17 @@ TEST(MapMistakes, a_midlevel_of_zero_that_was_said_is_taken_at_its_word) {
     map.has_midlevel = true;
     EXPECT_FALSE(has_code(inspect_map(map, MapMeaning::declared), "W-INT16"));
     EXPECT_FALSE(
-        has_code(inspect_map(make_map(make_sculpt_texture(kSize)), MapMeaning::declared), "I-NONEG"));
+        has_code(inspect_map(make_map(make_sculpt_texture(kMapSize)), MapMeaning::declared), "I-NONEG"));
 }
 
 TEST(MapMistakes, a_colour_tag_of_the_file_is_told) {
-    auto texture = make_sculpt_texture(kSize);
+    auto texture = make_sculpt_texture(kMapSize);
     texture->colour_tag = "sRGB chunk";
     EXPECT_HAS_PART(find_text(inspect(make_map(texture)), "W-SRGB"), "sRGB chunk");
 }
 
 TEST(MapMistakes, a_map_of_one_value_is_empty) {
-    auto texture = make_sculpt_texture(kSize);
+    auto texture = make_sculpt_texture(kMapSize);
     std::fill(texture->floats.begin(), texture->floats.end(), 0.25f);
     Displacement map = make_map(texture);
     EXPECT_HAS_PART(find_text(inspect(map), "W-EMPTY"), "0.25");
@@ -99,7 +99,7 @@ TEST(MapMistakes, a_map_of_one_value_is_empty) {
 }
 
 TEST(MapMistakes, one_channel_and_equal_channels_are_heights) {
-    auto texture = make_sculpt_texture(kSize);
+    auto texture = make_sculpt_texture(kMapSize);
     for (size_t i = 0; i < texture->floats.size(); i += 4)
         texture->floats[i] = texture->floats[i + 1] = texture->floats[i + 2];
     Displacement map = make_map(texture);
@@ -112,9 +112,9 @@ TEST(MapMistakes, one_channel_and_equal_channels_are_heights) {
 }
 
 TEST(MapMistakes, a_normal_map_is_recognised) {
-    auto texture = make_sculpt_texture(kSize);
+    auto texture = make_sculpt_texture(kMapSize);
     texture->source_type = SampleType::uint8;
-    for (uint32_t k = 0; k < kSize * kSize; ++k) {
+    for (uint32_t k = 0; k < kMapSize * kMapSize; ++k) {
         const float x = 0.4f * std::sin(0.3f * float(k)), y = 0.4f * std::cos(0.7f * float(k));
         const float z = std::sqrt(1 - x * x - y * y);
         const float texel[3] = {x, y, z};
@@ -124,8 +124,8 @@ TEST(MapMistakes, a_normal_map_is_recognised) {
 }
 
 TEST(MapMistakes, a_bad_texel_is_an_error_with_its_place_and_tile) {
-    auto good = make_sculpt_texture(kSize), bad = make_sculpt_texture(kSize);
-    bad->floats[4 * (3 * kSize + 5) + 1] = std::numeric_limits<float>::quiet_NaN();
+    auto good = make_sculpt_texture(kMapSize), bad = make_sculpt_texture(kMapSize);
+    bad->floats[4 * (3 * kMapSize + 5) + 1] = std::numeric_limits<float>::quiet_NaN();
     const Inspection single = inspect(make_map(bad));
     EXPECT_HAS_PART(find_text(single, "E-NAN"), "1 texel(s), the first at column 5, row 3;");
     Displacement map = make_map(good);
@@ -141,26 +141,26 @@ TEST(MapMistakes, a_map_of_nothing_but_bad_texels_is_told) {
 }
 
 TEST(MapMistakes, a_texel_far_out_is_told_with_its_place) {
-    auto texture = make_sculpt_texture(kSize);
-    texture->floats[4 * (7 * kSize + 9) + 2] = 40;
+    auto texture = make_sculpt_texture(kMapSize);
+    texture->floats[4 * (7 * kMapSize + 9) + 2] = 40;
     const std::string text = find_text(inspect(make_map(texture)), "W-OUTLIER");
     EXPECT_HAS_PART(text, "column 9, row 7 is 40 long");
 }
 
 TEST(MapMistakes, a_constant_offset_is_told_with_its_values) {
-    auto texture = make_sculpt_texture(kSize);
+    auto texture = make_sculpt_texture(kMapSize);
     for (size_t i = 0; i < texture->floats.size(); i += 4) texture->floats[i] += 0.25f;
     const std::string text = find_text(inspect(make_map(texture)), "W-BORDER");
     EXPECT_HAS_PART(text, "(0.25, 0, 0)");
     EXPECT_HAS_PART(text, "most in R");
-    auto constant = make_sculpt_texture(kSize);
+    auto constant = make_sculpt_texture(kMapSize);
     for (size_t i = 0; i < constant->floats.size(); ++i) constant->floats[i] = i % 4 == 1 ? 0.1f : 0.0f;
     EXPECT_TRUE(has_code(inspect(make_map(constant)), "W-BORDER"));
 }
 
 TEST(MapMistakes, a_length_far_from_the_size_of_the_mesh_is_told) {
     const Mesh plane = make_sculpt_plane();
-    Displacement map = make_map(make_sculpt_texture(kSize));
+    Displacement map = make_map(make_sculpt_texture(kMapSize));
     EXPECT_EQ(count_severe(inspect_map(map, MapMeaning::declared, &plane)), 0u);
     map.scale = {100, 100, 100};
     EXPECT_TRUE(has_code(inspect_map(map, MapMeaning::declared, &plane), "W-SCALE"));
@@ -170,7 +170,7 @@ TEST(MapMistakes, a_length_far_from_the_size_of_the_mesh_is_told) {
 
 TEST(MapMistakes, a_mesh_finer_than_its_map_is_told) {
     Mesh mesh = make_sculpt_plane();
-    const Displacement map = make_map(make_sculpt_texture(kSize));
+    const Displacement map = make_map(make_sculpt_texture(kMapSize));
     mesh.uvs = {{0, 0}, {0.01f, 0}, {0.01f, 0.01f}, {0, 0.01f}};
     EXPECT_HAS_PART(find_text(inspect_map(map, MapMeaning::unknown, &mesh), "W-LEVEL"), "finer than its map");
     mesh.uvs = {{0, 0}, {100, 0}, {100, 100}, {0, 100}};
@@ -179,7 +179,7 @@ TEST(MapMistakes, a_mesh_finer_than_its_map_is_told) {
 
 TEST(MapMistakes, folds_are_a_note_with_their_share) {
     const Mesh plane = make_sculpt_plane();
-    Displacement map = make_map(make_sculpt_texture(kSize));
+    Displacement map = make_map(make_sculpt_texture(kMapSize));
     const std::string steep = find_text(inspect_map(map, MapMeaning::declared, &plane), "I-FOLD");
     EXPECT_HAS_PART(steep, "folds over in 1"); // 13 to 15 of 100 texels
     map.scale = {0.2f, 0.2f, 1};

@@ -16,7 +16,7 @@ namespace relief {
 
 namespace {
 
-constexpr uint32_t kSize = 48;
+constexpr uint32_t kSculptSize = 48;
 constexpr uint8_t kLevel = 5;
 constexpr float kScale = 2 * test::kSculptReach;
 const AxisMap kTnb{{0, 2, 1}, {1, 1, 1}};
@@ -24,17 +24,17 @@ const AxisMap kTnb{{0, 2, 1}, {1, 1, 1}};
 /// All texels of the sculpt, along `axes`; `code` turns a displacement into what the file holds.
 template <class Value, class Code> std::vector<Value> make_texels(const AxisMap& axes, const Code& code) {
     std::vector<Value> texels;
-    for (uint32_t y = 0; y < kSize; ++y)
-        for (uint32_t x = 0; x < kSize; ++x)
+    for (uint32_t y = 0; y < kSculptSize; ++y)
+        for (uint32_t x = 0; x < kSculptSize; ++x)
             for (size_t c = 0; c < 3; ++c)
                 texels.push_back(
-                    code(test::encode_channel(test::displace_sculpt_texel(kSize, x, y), axes, c)));
+                    code(test::encode_channel(test::displace_sculpt_texel(kSculptSize, x, y), axes, c)));
     return texels;
 }
 
 float keep(float value) { return value; }
 uint16_t to_half(float value) { return half(value).bits(); }
-template <class Value> Value quantise(float value) {
+template <class Value> Value quantise_sculpt(float value) {
     return Value(std::lround((value / kScale + 0.5f) * float(std::numeric_limits<Value>::max())));
 }
 
@@ -71,13 +71,13 @@ class Conventions : public FileTest {
         write_map<float>("f.exr", {}, OIIO::TypeDesc::FLOAT, keep);
         write_map<uint16_t>("h.exr", {}, OIIO::TypeDesc::HALF, to_half);
         write_map<float>("f.tif", kTnb, OIIO::TypeDesc::FLOAT, keep);
-        write_map<uint16_t>("w.tif", {}, OIIO::TypeDesc::UINT16, quantise<uint16_t>);
-        write_map<uint8_t>("b.png", {}, OIIO::TypeDesc::UINT8, quantise<uint8_t>);
+        write_map<uint16_t>("w.tif", {}, OIIO::TypeDesc::UINT16, quantise_sculpt<uint16_t>);
+        write_map<uint8_t>("b.png", {}, OIIO::TypeDesc::UINT8, quantise_sculpt<uint8_t>);
     }
     template <class Value, class Code>
     void write_map(const std::string& name, const AxisMap& axes, OIIO::TypeDesc type,
                    const Code& code) const {
-        write_pixels<Value>(name, kSize, kSize, 3, type, make_texels<Value>(axes, code));
+        write_pixels<Value>(name, kSculptSize, kSculptSize, 3, type, make_texels<Value>(axes, code));
     }
     std::string get_looks(const std::string& file) {
         const Inspection inspection = inspect_map(load(file), MapMeaning::unknown);

@@ -10,20 +10,18 @@ namespace relief {
 
 namespace {
 
-using Json = nlohmann::json;
-
 class GltfAnimations : public SceneFiles {
   protected:
     /// A square on a node below another, which an animation "go" moves.
     GltfAnimations() : document_(make_gltf_square()) {
         document_.json["nodes"] = {{{"children", {1}}, {"translation", {5, 0, 0}}}, {{"mesh", 0}}};
         document_.json["animations"] = {
-            {{"name", "go"}, {"samplers", Json::array()}, {"channels", Json::array()}}};
+            {{"name", "go"}, {"samplers", GltfJson::array()}, {"channels", GltfJson::array()}}};
     }
 
     void add_channel(int node, const std::string& path, int input, int output,
                      const std::string& interpolation = "LINEAR") {
-        Json& animation = document_.json["animations"][0];
+        GltfJson& animation = document_.json["animations"][0];
         animation["samplers"].push_back(
             {{"input", input}, {"output", output}, {"interpolation", interpolation}});
         animation["channels"].push_back(
@@ -99,7 +97,7 @@ TEST_F(GltfAnimations, take_sparse_targets) {
     document_.json["meshes"][0]["weights"] = {1};
     const int indices = document_.add<uint8_t>("SCALAR", 5121, {2});
     const int values = document_.add_floats("VEC3", {0, 0, 7});
-    Json& accessor =
+    GltfJson& accessor =
         document_.json["accessors"][primitive_of(document_)["targets"][0]["POSITION"].get<size_t>()];
     const auto view = [&](int index) { return document_.json["accessors"][size_t(index)]["bufferView"]; };
     accessor["sparse"] = {{"count", 1},

@@ -12,10 +12,12 @@
 
 namespace relief {
 
+using GltfJson = nlohmann::json;
+
 /// In the making: accessors have bytes of their own, in one buffer.
 class GltfDocument {
   public:
-    using Json = nlohmann::json;
+    using Json = GltfJson;
 
     GltfDocument() {
         json = {

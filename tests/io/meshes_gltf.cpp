@@ -11,8 +11,6 @@ namespace relief {
 namespace {
 
 using GltfFiles = FileTest;
-using Json = nlohmann::json;
-
 using Document = GltfDocument;
 
 Document make_square() { return make_gltf_square(); }
@@ -48,7 +46,7 @@ TEST_F(GltfFiles, encoded_ngons_become_polygons_again) {
     document.json["meshes"] = {{{"primitives",
                                  {{{"attributes", {{"POSITION", positions}}},
                                    {"indices", indices},
-                                   {"extensions", {{"FB_ngon_encoding", Json::object()}}}}}}}};
+                                   {"extensions", {{"FB_ngon_encoding", GltfJson::object()}}}}}}}};
     EXPECT_EQ(parse(document).face_sizes, (std::vector<uint32_t>{5, 4, 3, 3}));
     EXPECT_EQ(parse(document).position_indices,
               (std::vector<uint32_t>{0, 1, 2, 3, 4, 1, 5, 6, 2, 7, 8, 0, 7, 1, 2}));
@@ -78,7 +76,7 @@ TEST_F(GltfFiles, positions_are_welded_and_node_transforms_applied) {
 
 TEST_F(GltfFiles, a_mirroring_node_turns_faces_normals_and_tangents_round) {
     Document document = make_square();
-    Json& attributes = primitive_of(document)["attributes"];
+    GltfJson& attributes = primitive_of(document)["attributes"];
     attributes["NORMAL"] = document.add_floats("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
     attributes["TANGENT"] = document.add_floats("VEC4", {1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, NAN, 0, 0, -1});
     const Mesh plain = parse(document);
@@ -133,7 +131,7 @@ TEST_F(GltfFiles, nodes_that_are_no_tree_are_refused) {
 
 TEST_F(GltfFiles, the_uv_set_is_chosen_and_v_grows_upwards) {
     Document document = make_square();
-    Json& attributes = primitive_of(document)["attributes"];
+    GltfJson& attributes = primitive_of(document)["attributes"];
     attributes["TEXCOORD_0"] = document.add_floats("VEC2", {0, 1, 1, 1, 1, 0, 0, 0});
     attributes["TEXCOORD_1"] = document.add<uint16_t>("VEC2", 5123, {0, 0, 65535, 0, 65535, 65535, 0, 65535});
     document.json["accessors"].back()["normalized"] = true;
@@ -144,7 +142,7 @@ TEST_F(GltfFiles, the_uv_set_is_chosen_and_v_grows_upwards) {
     const std::string message = message_of([&] { parse(document, {.uv_set = 2}); });
     EXPECT_HAS(message, "m.glb: has no uv set 2");
     EXPECT_HAS(message, "it has 2, counted from 0");
-    Json bare = primitive_of(document);
+    GltfJson bare = primitive_of(document);
     bare["attributes"].erase("TEXCOORD_1");
     document.json["meshes"][0]["primitives"].push_back(bare);
     EXPECT_EQ(parse(document).face_sizes.size(), 4u);
@@ -187,8 +185,8 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
         change(document);
         return message_of([&] { parse(document); });
     };
-    const auto set = [&](const char* pointer, const Json& value) {
-        return complain([&](Document& d) { d.json[Json::json_pointer(pointer)] = value; });
+    const auto set = [&](const char* pointer, const GltfJson& value) {
+        return complain([&](Document& d) { d.json[GltfJson::json_pointer(pointer)] = value; });
     };
     EXPECT_HAS(set("/asset/version", "1.0"), "glTF of version 1.0");
     EXPECT_HAS(set("/accessors/0/count", 5), "accessors[0]: goes to byte 60 of a bufferView of 48 bytes");
@@ -198,20 +196,20 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
     EXPECT_HAS(set("/accessors/0/bufferView", 9), "there is no bufferView 9: the file has 2");
     EXPECT_HAS(set("/accessors/0/componentType", 5124), "5124");
     EXPECT_HAS(set("/accessors/0/type", "VEC4"), "is of type VEC4, not VEC3");
-    EXPECT_HAS(set("/accessors/0/sparse", Json::object()), "accessors[0].sparse: key 'count' is missing");
-    EXPECT_HAS(set("/accessors/1/sparse", Json::object()), "accessors[1]: is sparse (export it without");
+    EXPECT_HAS(set("/accessors/0/sparse", GltfJson::object()), "accessors[0].sparse: key 'count' is missing");
+    EXPECT_HAS(set("/accessors/1/sparse", GltfJson::object()), "accessors[1]: is sparse (export it without");
     EXPECT_HAS(set("/accessors/1/componentType", 5122), "indices must be unsigned integers");
     EXPECT_HAS(set("/bufferViews/0/byteStride", 8), "bufferViews[0].byteStride");
     EXPECT_HAS(set("/bufferViews/0/byteStride", 20), "goes to byte 72");
     EXPECT_HAS(set("/bufferViews/1/byteLength", 1e9), "bufferViews[1]: goes to byte");
     EXPECT_HAS(set("/bufferViews/1/buffer", 1), "there is no buffer 1: the file has 1");
-    EXPECT_HAS(set("/meshes/0/primitives/0/attributes", Json::object()), "key 'POSITION' is missing");
+    EXPECT_HAS(set("/meshes/0/primitives/0/attributes", GltfJson::object()), "key 'POSITION' is missing");
     EXPECT_HAS(set("/meshes/0/primitives/0/indices", 0), "is of type VEC3, not SCALAR");
-    EXPECT_HAS(set("/nodes", Json::parse(R"([{"children":[1]},{"children":[1]}])")),
+    EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"children":[1]},{"children":[1]}])")),
                "nodes[1]: stands twice");
-    EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":3}])")), "nodes[0].mesh: there is no mesh 3");
-    EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":0,"rotation":[0,0,0,0]}])")), "has no length");
-    EXPECT_HAS(set("/nodes", Json::parse(R"([{"mesh":0,"matrix":[1,2]}])")), "must be 16 numbers, not 2");
+    EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":3}])")), "nodes[0].mesh: there is no mesh 3");
+    EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":0,"rotation":[0,0,0,0]}])")), "has no length");
+    EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":0,"matrix":[1,2]}])")), "must be 16 numbers, not 2");
     EXPECT_HAS(set("/extensionsRequired", {"KHR_draco_mesh_compression"}), "without compression");
     EXPECT_HAS(set("/meshes", {1}), "meshes[0]: must be an object");
     EXPECT_HAS(complain([](Document& d) { d.json["accessors"][0].erase("bufferView"); }),

@@ -11,7 +11,7 @@ namespace relief {
 
 namespace {
 
-constexpr const char* kMovingScene = R"({"render": {"frames": "1-4", "fps": 24},
+constexpr const char* kUpdatedScene = R"({"render": {"frames": "1-4", "fps": 24},
   "camera": {"from": {"keys": [[1, [0, 0, 5]], [5, [4, 0, 5]]]}, "to": [0, 0, 0]},
   "materials": {"clay": {"roughness": {"keys": [[2, 0.5], [3, 0.5], [4, 1]]}}},
   "displacements": {"ear": {"file": "map.exr", "type": "vector", "scale": {"keys": [[4, 1], [5, 2]]}}},
@@ -63,7 +63,7 @@ std::shared_ptr<const Texture> get_wave(const Scene& scene) {
 float get_first(const SceneUpdate& update) { return get_wave(*update.scene)->floats[0]; }
 
 TEST_F(ShotUpdates, hold_no_scene_where_the_camera_alone_moves) {
-    Shot shot = make_shot(kMovingScene);
+    Shot shot = make_shot(kUpdatedScene);
     shot.load(1);
     const SceneUpdate update = shot.update(2.5);
     EXPECT_FALSE(update.scene.has_value());
@@ -78,7 +78,7 @@ TEST_F(ShotUpdates, hold_no_scene_where_the_camera_alone_moves) {
 }
 
 TEST_F(ShotUpdates, hold_all_but_meshes_that_stay_and_share_textures) {
-    Shot shot = make_shot(kMovingScene);
+    Shot shot = make_shot(kUpdatedScene);
     const Scene first = shot.load(1);
     const SceneUpdate update = shot.update(3.5);
     ASSERT_TRUE(update.scene.has_value());
@@ -97,7 +97,7 @@ TEST_F(ShotUpdates, hold_all_but_meshes_that_stay_and_share_textures) {
 }
 
 TEST_F(ShotUpdates, follow_scales_and_transforms_and_say_nothing_twice) {
-    Shot shot = make_shot(kMovingScene);
+    Shot shot = make_shot(kUpdatedScene);
     shot.load(4);
     spoil("map.exr"), spoil("plane.obj");
     EXPECT_EQ(shot.update(4.5).scene->displacements[0].scale.x, 1.5f);
@@ -121,7 +121,7 @@ TEST_F(ShotUpdates, place_instances_again) {
 }
 
 TEST_F(ShotUpdates, hold_all_of_a_scene_that_nobody_has) {
-    Shot shot = make_shot(kMovingScene);
+    Shot shot = make_shot(kUpdatedScene);
     const SceneUpdate first = shot.update(1);
     ASSERT_TRUE(first.scene.has_value());
     EXPECT_FALSE(first.scene->meshes[0].positions.empty());
@@ -282,12 +282,12 @@ TEST_F(ShotUpdates, list_files_that_an_open_shutter_reads) {
         std::ranges::sort(names);
         return names;
     };
-    using Names = std::vector<std::string>;
-    EXPECT_EQ(list("[0, 0]", 2), (Names{"wave.0002.exr"}));
-    EXPECT_EQ(list("[-0.25, 0.25]", 2), (Names{"wave.0001.exr", "wave.0002.exr", "wave.0003.exr"}));
-    EXPECT_EQ(list("[-0.25, 0.25]", 3), (Names{"wave.0002.exr", "wave.0003.exr"}));
-    EXPECT_EQ(list("[0, 1]", 1), (Names{"wave.0001.exr", "wave.0002.exr"})) << "it closes before frame 2";
-    EXPECT_EQ(list("[0, 0]", 2.5), (Names{"wave.0002.exr", "wave.0003.exr"}));
+    using Files = std::vector<std::string>;
+    EXPECT_EQ(list("[0, 0]", 2), (Files{"wave.0002.exr"}));
+    EXPECT_EQ(list("[-0.25, 0.25]", 2), (Files{"wave.0001.exr", "wave.0002.exr", "wave.0003.exr"}));
+    EXPECT_EQ(list("[-0.25, 0.25]", 3), (Files{"wave.0002.exr", "wave.0003.exr"}));
+    EXPECT_EQ(list("[0, 1]", 1), (Files{"wave.0001.exr", "wave.0002.exr"})) << "it closes before frame 2";
+    EXPECT_EQ(list("[0, 0]", 2.5), (Files{"wave.0002.exr", "wave.0003.exr"}));
     EXPECT_HAS(message_of([&] { list("[-0.25, 0.25]", 4); }), "wave.0004.exr");
     remove("wave.0002.exr");
     EXPECT_HAS(message_of([&] { list("[-0.25, 0.25]", 3); }), "wave.0002.exr");
@@ -354,8 +354,8 @@ TEST_F(ShotUpdates, have_hashes_of_the_keys_that_a_shutter_sees) {
 }
 
 TEST_F(ShotUpdates, keep_the_rate_of_frames) {
-    EXPECT_EQ(make_shot(kMovingScene).load(1).picture.fps, 24);
-    save_scene(make_shot(kMovingScene).load(1), folder_ / "copy");
+    EXPECT_EQ(make_shot(kUpdatedScene).load(1).picture.fps, 24);
+    save_scene(make_shot(kUpdatedScene).load(1), folder_ / "copy");
     EXPECT_EQ(load_scene(folder_ / "copy" / "scene.json").picture.fps, 24);
     EXPECT_HAS(error_of(R"({"render": {"fps": 0}})"), "render.fps");
 }

@@ -34,7 +34,7 @@ std::vector<BoxSet> make_sets() {
     return sets;
 }
 
-std::vector<LbvhBuilder::Config> make_configs() {
+std::vector<LbvhBuilder::Config> make_lbvh_configs() {
     std::vector<LbvhBuilder::Config> configs;
     for (const int code_bits : {30, 63})
         for (const uint32_t leaf_size : {1u, 4u, scalar::kNodeCountMask}) {
@@ -125,7 +125,7 @@ class RuleCheck {
 
 TEST(Lbvh, follows_its_rule) {
     for (const BoxSet& set : make_sets())
-        for (const LbvhBuilder::Config& config : make_configs()) {
+        for (const LbvhBuilder::Config& config : make_lbvh_configs()) {
             SCOPED_TRACE(set.name);
             const AxisBvh tree = LbvhBuilder::build(set.boxes, config);
             RuleCheck(tree, compute_morton_order(set.boxes, config.code_bits), config.max_leaf_size).run();
@@ -134,7 +134,7 @@ TEST(Lbvh, follows_its_rule) {
 
 TEST(Lbvh, holds_every_primitive_once_and_children_inside_parents) {
     for (const BoxSet& set : make_sets())
-        for (const LbvhBuilder::Config& config : make_configs()) {
+        for (const LbvhBuilder::Config& config : make_lbvh_configs()) {
             SCOPED_TRACE(set.name);
             const AxisBvh tree = LbvhBuilder::build(set.boxes, config);
             test::expect_sound(tree.bvh, set.boxes, config.max_leaf_size);
@@ -152,7 +152,7 @@ TEST(Lbvh, is_empty_without_primitives) {
 
 TEST(Lbvh, is_the_same_for_any_number_of_threads) {
     const std::vector<Box> boxes = test::make_random_boxes(72, 100000, 10, 0.1f);
-    for (const LbvhBuilder::Config& config : make_configs()) {
+    for (const LbvhBuilder::Config& config : make_lbvh_configs()) {
         AxisBvh serial, parallel;
         DenseHeap serial_heap, parallel_heap;
         with_threads(1, [&] { serial = LbvhBuilder::build(boxes, config); });

@@ -20,7 +20,7 @@ using test::NearestLeaf;
 using test::Triangle;
 using Cells = SahKdTreeBuilder::Cells;
 
-std::vector<SahKdTreeBuilder::Config> make_configs() {
+std::vector<SahKdTreeBuilder::Config> make_kdtree_configs() {
     std::vector<SahKdTreeBuilder::Config> configs;
     for (const float empty_factor : {1.0f, 0.8f})
         for (const float traversal_cost : {3.0f, 0.1f}) {
@@ -105,7 +105,7 @@ TEST(SahKdTree, holds_in_every_leaf_what_touches_its_cell) {
     for (const test::TriangleSet& set : test::make_triangle_sets())
         if (!set.triangles.empty()) sets.push_back({set.name, set.boxes()});
     for (const BoxSet& set : sets)
-        for (const SahKdTreeBuilder::Config& config : make_configs()) {
+        for (const SahKdTreeBuilder::Config& config : make_kdtree_configs()) {
             SCOPED_TRACE(set.name);
             const KdTree tree = SahKdTreeBuilder::build(set.boxes, config);
             SoundCheck(tree, set.boxes).run();
@@ -150,7 +150,7 @@ TEST(SahKdTree, keeps_to_its_depth_and_its_duplicates) {
 
 TEST(SahKdTree, is_the_same_for_any_number_of_threads) {
     const std::vector<Box> boxes = test::make_random_boxes(103, 20000, 10, 0.2f);
-    for (const SahKdTreeBuilder::Config& config : make_configs()) {
+    for (const SahKdTreeBuilder::Config& config : make_kdtree_configs()) {
         KdTree serial, parallel;
         with_threads(1, [&] { serial = SahKdTreeBuilder::build(boxes, config); });
         with_threads(2, [&] { parallel = SahKdTreeBuilder::build(boxes, config); });

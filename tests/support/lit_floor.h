@@ -33,6 +33,13 @@ inline void expect_irradiance(Scene scene, double irradiance, int spp, int bounc
     EXPECT_LT(mean.standard_error, 0.02 * expected + 1e-6);
 }
 
+/// Form factor from a point to a parallel rectangle a x b at distance 1 with a corner right above it (Howell,
+/// A Catalog of Radiation Heat Transfer Configuration Factors, B-4).
+inline double corner_form_factor(double a, double b) {
+    const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
+    return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * kPi);
+}
+
 inline Light make_sun(const Vec3f& direction, float angle_degrees) {
     Light light;
     light.direction = direction;

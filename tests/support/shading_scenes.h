@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 #include "math/vec.h"
 #include "relief/render.h"
@@ -122,6 +123,10 @@ inline Mean compute_covered_mean(const Image& image) {
     mean.value /= double(mean.pixels);
     mean.standard_error = std::sqrt(sum_of_variances) / double(mean.pixels);
     return mean;
+}
+
+inline Mean render_mean(Scene scene, const RenderSettings& settings) {
+    return compute_covered_mean(render(std::move(scene), settings).image);
 }
 
 } // namespace relief

@@ -30,7 +30,7 @@ std::vector<uint32_t> get_ranks(const Image& image) {
 }
 
 /// Rays at the very edge of a square may hit on one engine only.
-void expect_nearly_same(const Image& a, const Image& b) {
+void expect_nearly_same_ranks(const Image& a, const Image& b) {
     const std::vector<uint32_t> x = get_ranks(a), y = get_ranks(b);
     ASSERT_EQ(x.size(), y.size());
     size_t other = 0;
@@ -45,7 +45,7 @@ TEST(DeviceCryptomatte, has_the_ranks_of_the_cpu_engine) {
     for (const float spacing : {0.7f, 0.3f}) { // some mattes a pixel; more than slots
         const Scene scene = test::make_wall(spacing);
         const Image device = render(scene, make_settings(EngineKind::vulkan, 21)).image;
-        expect_nearly_same(device, render(scene, make_settings(EngineKind::cpu, 21)).image);
+        expect_nearly_same_ranks(device, render(scene, make_settings(EngineKind::cpu, 21)).image);
     }
 }
 

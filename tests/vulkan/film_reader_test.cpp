@@ -12,12 +12,12 @@ namespace relief::vulkan::tests {
 namespace {
 
 constexpr int kWidth = 37, kHeight = 5;
-constexpr uint32_t kCount = kWidth * kHeight;
+constexpr uint32_t kPixelCount = kWidth * kHeight;
 
 /// Every word has a value of its own.
 std::vector<scalar::FilmSumsData> make_sums() {
-    std::vector<scalar::FilmSumsData> sums(kCount);
-    for (uint32_t k = 0; k < kCount; ++k) {
+    std::vector<scalar::FilmSumsData> sums(kPixelCount);
+    for (uint32_t k = 0; k < kPixelCount; ++k) {
         std::array<float, scalar::kFilmSumsWords> words;
         for (uint32_t w = 0; w < words.size(); ++w) words[w] = float(k * words.size() + w) / 64;
         std::memcpy(&sums[k], words.data(), sizeof(words));
@@ -29,16 +29,16 @@ std::vector<scalar::FilmSumsData> make_sums() {
 
 std::vector<uint32_t> list_pixels() {
     std::vector<uint32_t> pixels;
-    for (uint32_t k = 0; k < kCount; ++k) pixels.push_back(scalar::pack_pixel(k % kWidth, k / kWidth));
+    for (uint32_t k = 0; k < kPixelCount; ++k) pixels.push_back(scalar::pack_pixel(k % kWidth, k / kWidth));
     return pixels;
 }
 
 class FilmReaderTest : public GpuTest {
   protected:
     BindingTable bindings_{device()};
-    Commands commands_{device(), bindings_};
-    Buffer sums_{device(), {.name = "sums", .bytes = kCount * sizeof(scalar::FilmSumsData)}};
-    Buffer scratch_{device(), {.name = "scratch", .bytes = kCount * sizeof(scalar::FilmColorsData)}};
+    vulkan::Commands commands_{device(), bindings_};
+    Buffer sums_{device(), {.name = "sums", .bytes = kPixelCount * sizeof(scalar::FilmSumsData)}};
+    Buffer scratch_{device(), {.name = "scratch", .bytes = kPixelCount * sizeof(scalar::FilmColorsData)}};
     const FilmReader reader_{device()};
 
     void SetUp() override {
@@ -52,7 +52,7 @@ class FilmReaderTest : public GpuTest {
         Film packed(kWidth, kHeight, {}, layers), whole(kWidth, kHeight, {}, layers);
         const std::vector<uint32_t> pixels = list_pixels();
         const FilmBatch batch{.pixels = pixels, .sample_count = 4};
-        const BatchSums chosen = reader_.pack(commands_, packed, sums_, scratch_, kCount);
+        const BatchSums chosen = reader_.pack(commands_, packed, sums_, scratch_, kPixelCount);
         commands_.run();
         EXPECT_EQ(chosen.has_colors_alone, is_packed);
         EXPECT_EQ(chosen.buffer, is_packed ? &scratch_ : &sums_);

@@ -62,13 +62,13 @@ namespace {
 using scalar::FormulaInput;
 using scalar::FormulaOutput;
 
-constexpr uint32_t kCount = 1u << 14;
+constexpr uint32_t kInputCount = 1u << 14;
 constexpr uint32_t kPartCount = 11;
 
 std::vector<FormulaInput> make_inputs() {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> unit(0.0f, 0.999f);
-    std::vector<FormulaInput> inputs(kCount);
+    std::vector<FormulaInput> inputs(kInputCount);
     for (FormulaInput& input : inputs) {
         input.a = uint32_t(random());
         input.b = uint32_t(random());
@@ -89,7 +89,7 @@ std::vector<FormulaOutput> run_on_device(const Device& device, const std::vector
     vulkan::Commands commands(device, bindings);
     for (uint32_t part = 0; part < kPartCount; ++part) {
         const Kernel kernel = make_test_kernel(device, "formulas", {64, part});
-        commands.dispatch(kernel, kCount, kCount);
+        commands.dispatch(kernel, kInputCount, kInputCount);
         commands.run();
     }
     return to.download<FormulaOutput>(inputs.size());

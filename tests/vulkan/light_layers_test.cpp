@@ -10,7 +10,7 @@ namespace relief::vulkan::tests {
 
 namespace {
 
-RenderSettings make_settings(int spp) {
+RenderSettings make_layer_settings(int spp) {
     RenderSettings settings = test::make_room_settings(spp);
     settings.device.engine = EngineKind::vulkan;
     settings.device.index = get_test_device_index();
@@ -34,7 +34,7 @@ void expect_nearly_same(const Image& a, const Image& b) {
 
 TEST(DeviceLightLayers, are_those_of_the_cpu_engine_and_sum_up_to_the_colour) {
     for (const float clamp : {0.0f, 0.2f}) {
-        RenderSettings settings = make_settings(19);
+        RenderSettings settings = make_layer_settings(19);
         settings.image.clamp_indirect = clamp;
         settings.image.crop = {1, 2, 24, 18};
         if (clamp > 0) settings.image.background = Vec3f{0.1f, 0.7f, 0.2f};
@@ -49,21 +49,21 @@ TEST(DeviceLightLayers, are_those_of_the_cpu_engine_and_sum_up_to_the_colour) {
 }
 
 TEST(DeviceLightLayers, leave_the_colours_as_they_are_and_go_on_to_the_bits_of_one_render) {
-    const Image whole = render_room(make_settings(20));
+    const Image whole = render_room(make_layer_settings(20));
     std::stringstream film;
     Checkpoints checkpoints;
     checkpoints.save = [&](const std::function<void(std::ostream&)>& write) { film.str(""), write(film); };
-    render_room(make_settings(16), checkpoints);
+    render_room(make_layer_settings(16), checkpoints);
     Checkpoints further;
     further.resume = &film;
-    EXPECT_EQ(render_room(make_settings(20), further).pixels, whole.pixels);
-    RenderSettings plain = make_settings(20);
+    EXPECT_EQ(render_room(make_layer_settings(20), further).pixels, whole.pixels);
+    RenderSettings plain = make_layer_settings(20);
     plain.image.layers.clear();
     EXPECT_EQ(test::get_colors(whole), render_room(plain).pixels);
 }
 
 TEST(DeviceLightLayers, go_with_mattes_and_are_there_for_some_alone) {
-    RenderSettings settings = make_settings(5);
+    RenderSettings settings = make_layer_settings(5);
     const Image whole = render_room(settings);
     for (const std::vector<std::string>& some :
          {std::vector<std::string>{"light_sky", "light_lamp", "CryptoObject"},
@@ -80,7 +80,7 @@ TEST(DeviceLightLayers, go_with_mattes_and_are_there_for_some_alone) {
 }
 
 TEST(DeviceLightLayers, sum_up_where_noise_decides_how_many_samples_there_are) {
-    RenderSettings settings = make_settings(32);
+    RenderSettings settings = make_layer_settings(32);
     settings.image.noise = 0.15f;
     test::expect_layers_of_light(render_room(settings));
 }

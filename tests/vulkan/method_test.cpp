@@ -14,7 +14,7 @@ const std::vector<std::string> kLayers{
     "depth",         "N",           "Ng", "P", "albedo", "uv", "id", "cost", "specular_direct",
     "light_default", "CryptoObject"};
 
-RenderSettings make_settings() {
+RenderSettings make_method_settings() {
     RenderSettings settings;
     settings.device.engine = EngineKind::vulkan;
     settings.image.width = 48, settings.image.height = 32;
@@ -70,7 +70,7 @@ size_t count_hits(const Image& image) {
 }
 
 /// A change to the scene and settings that all begin with.
-struct Case {
+struct MethodCase {
     const char* name;
     void (*change)(Scene& scene, RenderSettings& settings);
 };
@@ -115,19 +115,20 @@ void use_visible_lights(Scene& scene, RenderSettings& settings) {
     }
 }
 
-class Methods : public testing::TestWithParam<Case> {};
+class Methods : public testing::TestWithParam<MethodCase> {};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Methods,
-                         testing::Values(Case{"as_it_is", [](Scene&, RenderSettings&) {}},
-                                         Case{"many_levels", use_many_levels}, Case{"tiles", use_tiles},
-                                         Case{"surroundings", use_surroundings},
-                                         Case{"polygons_alone", use_polygons_alone},
-                                         Case{"visible_lights", use_visible_lights}),
+                         testing::Values(MethodCase{"as_it_is", [](Scene&, RenderSettings&) {}},
+                                         MethodCase{"many_levels", use_many_levels},
+                                         MethodCase{"tiles", use_tiles},
+                                         MethodCase{"surroundings", use_surroundings},
+                                         MethodCase{"polygons_alone", use_polygons_alone},
+                                         MethodCase{"visible_lights", use_visible_lights}),
                          [](const auto& info) { return info.param.name; });
 
 TEST_P(Methods, find_the_same_bits) {
     Scene scene = make_scene(DisplacementSpace::tangent);
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_method_settings();
     GetParam().change(scene, settings);
     const Picture expected = render_with(RenderMethod::compute, scene, settings);
     EXPECT_GT(count_hits(expected.image), 200u);
@@ -143,7 +144,7 @@ TEST_P(Methods, find_the_same_bits) {
 /// The four pairs of Sousa et al. 2019, by each of their methods.
 TEST(PairsOfStructureAndTraversal, make_one_picture_by_every_method) {
     const Scene scene = make_scene(DisplacementSpace::tangent);
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_method_settings();
     settings.image.spp = 1;
     const Picture expected = render_with(RenderMethod::compute, scene, settings);
     const std::pair<StructureKind, TraversalKind> pairs[] = {
@@ -173,7 +174,7 @@ class HybridMethod : public testing::Test {
 };
 
 TEST_F(HybridMethod, draws_the_same_picture_again_and_in_small_batches) {
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_method_settings();
     settings.experiment.method = RenderMethod::hybrid;
     settings.image.crop = {2, 1, 45, 30};
     const auto prepared = prepare_scene(make_scene(DisplacementSpace::object), settings);
@@ -197,7 +198,7 @@ TEST_F(HybridMethod, draws_the_same_picture_again_and_in_small_batches) {
 }
 
 TEST_F(HybridMethod, refuses_a_window_larger_than_the_device_draws) {
-    RenderSettings settings = make_settings();
+    RenderSettings settings = make_method_settings();
     settings.experiment.method = RenderMethod::hybrid;
     const uint32_t most = device().max_draw_size();
     if (most >= uint32_t(kMaxPictureSize)) GTEST_SKIP() << "no picture is too large";

@@ -14,7 +14,7 @@ namespace relief::vulkan::tests {
 namespace {
 
 /// A body that moves and whose relief grows.
-Scene make_scene(double frame) {
+Scene make_moving_scene(double frame) {
     Scene scene = test::make_rough_torus();
     scene.objects[0].world_from_object.translation.x = float(frame);
     scene.displacements[0].scale = scene.displacements[0].scale * (1 + float(frame));
@@ -23,12 +23,12 @@ Scene make_scene(double frame) {
 }
 
 SceneUpdate update_scene(double frame) {
-    Scene scene = make_scene(frame);
+    Scene scene = make_moving_scene(frame);
     const Camera camera = scene.camera;
     return {std::move(scene), camera, 1};
 }
 
-RenderSettings make_settings(int samples) {
+RenderSettings make_blur_settings(int samples) {
     RenderSettings settings = test::make_session_settings();
     settings.device.engine = EngineKind::vulkan;
     settings.device.index = get_test_device_index();
@@ -38,7 +38,7 @@ RenderSettings make_settings(int samples) {
 }
 
 Image render_blur(const RenderSettings& settings) {
-    Session session(make_scene(0), settings, SessionUse::scenes);
+    Session session(make_moving_scene(0), settings, SessionUse::scenes);
     return session.render_moving(0, update_scene).image;
 }
 
@@ -46,12 +46,13 @@ Image render_blur(const RenderSettings& settings) {
 
 TEST(DeviceMotionBlur, is_the_mean_of_still_pictures) {
     constexpr int kSamples = 4;
-    const Image blur = render_blur(make_settings(kSamples));
-    RenderSettings one = make_settings(1);
+    const Image blur = render_blur(make_blur_settings(kSamples));
+    RenderSettings one = make_blur_settings(1);
     std::vector<double> sums(blur.pixels.size());
     for (int k = 0; k < kSamples; ++k) {
         one.image.first_sample = k;
-        const Image still = render(make_scene(find_sample_time(make_scene(0).camera, 0, k)), one).image;
+        const Image still =
+            render(make_moving_scene(find_sample_time(make_moving_scene(0).camera, 0, k)), one).image;
         for (size_t p = 0; p < sums.size(); ++p) sums[p] += double(still.pixels[p]);
     }
     for (size_t p = 0; p < sums.size(); ++p)
@@ -59,7 +60,7 @@ TEST(DeviceMotionBlur, is_the_mean_of_still_pictures) {
 }
 
 TEST(DeviceMotionBlur, says_the_motion_that_the_cpu_engine_says) {
-    RenderSettings settings = make_settings(1);
+    RenderSettings settings = make_blur_settings(1);
     const Image device = render_blur(settings);
     settings.device.engine = EngineKind::cpu, settings.device.index = -1;
     const Image cpu = render_blur(settings);

@@ -32,7 +32,7 @@ class PatchTreePool : public GpuTest {
     bool has_marks() const { return trees_.download<uint32_t>(1).front() == 1; }
 
     BindingTable bindings_{device()};
-    Commands commands_{device(), bindings_};
+    vulkan::Commands commands_{device(), bindings_};
     Buffer trees_{device(), {.name = "trees", .bytes = sizeof(scalar::TreeRecord)}};
     Buffer counters_{device(), {.name = "counters", .bytes = sizeof(scalar::CounterData)}};
 };

@@ -10,7 +10,7 @@
 namespace relief::vulkan::tests {
 namespace {
 
-const std::vector<std::string> kLayers = test::list_all_layers("light_default");
+const std::vector<std::string> kAllLayers = test::list_all_layers("light_default");
 
 /// Lights in groups by turns, each with a layer.
 void add_light_groups(Scene& scene, std::vector<std::string>& layers) {
@@ -25,13 +25,13 @@ void add_light_groups(Scene& scene, std::vector<std::string>& layers) {
         if (!(scene.materials[k].emission == Vec3f{})) add(scene.materials[k].light_group, "lamp");
 }
 
-RenderSettings make_settings() {
+RenderSettings make_path_settings() {
     RenderSettings settings;
     settings.image.width = 32, settings.image.height = 24;
     settings.image.spp = 4, settings.image.bounces = 4, settings.surface.pixel_error = 4;
     settings.image.first_sample = 2, settings.image.seed = 8;
     settings.image.crop = {3, 2, 30, 23};
-    settings.image.layers = kLayers;
+    settings.image.layers = kAllLayers;
     settings.device.threads = 2;
     return settings;
 }
@@ -186,7 +186,7 @@ class PathTracerTest : public GpuTest {
         Film film(settings_.image.width, settings_.image.height, settings_.image.crop,
                   settings_.image.layers);
         auto mattes = std::make_shared<InstanceMattes>();
-        for (const Instance& instance : prepared_->instances) {
+        for (const relief::Instance& instance : prepared_->instances) {
             mattes->objects.push_back(0x3f800000u + (uint32_t(mattes->objects.size()) << 20));
             mattes->materials.push_back(0x3f800000u + (instance.material << 20));
         }
@@ -224,7 +224,7 @@ class PathTracerTest : public GpuTest {
         return picture;
     }
 
-    RenderSettings settings_ = make_settings();
+    RenderSettings settings_ = make_path_settings();
     std::shared_ptr<const PreparedScene> prepared_;
 };
 

@@ -8,7 +8,7 @@ namespace relief::vulkan::tests {
 
 namespace {
 
-struct Case {
+struct TracerCase {
     const char* name;
     DisplacementSpace space = DisplacementSpace::object;
     int level = 4;
@@ -28,12 +28,12 @@ struct Case {
     MapFilter filter = MapFilter::none;
 };
 
-void PrintTo(const Case& c, std::ostream* stream) { *stream << c.name; }
+void PrintTo(const TracerCase& c, std::ostream* stream) { *stream << c.name; }
 
-class VulkanTracerTest : public GpuTest, public testing::WithParamInterface<Case> {};
+class VulkanTracerTest : public GpuTest, public testing::WithParamInterface<TracerCase> {};
 
 TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
-    const Case& c = GetParam();
+    const TracerCase& c = GetParam();
     RenderSettings settings;
     settings.surface.level = c.level;
     settings.image.height = 60;
@@ -41,7 +41,7 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     settings.experiment.bottom = c.bottom;
     settings.surface.lod = c.lod;
     settings.surface.cache_bytes = c.cache_bytes;
-    Scene source = make_scene(c.space);
+    Scene source = test::make_scene(c.space);
     source.meshes[0].subdivision.scheme = c.scheme;
     source.meshes[0].subdivision.level = 1;
     source.displacements[0].filter = c.filter;
@@ -61,70 +61,71 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
 INSTANTIATE_TEST_SUITE_P(
     everything, VulkanTracerTest,
     testing::Values(
-        Case{.name = "room_for_one_ray", .pair_capacity = 4, .rays = 24},
-        Case{.name = "places_numbered_afresh", .level = 5, .pair_capacity = 1024, .restart_units = 1},
-        Case{.name = "level_0", .level = 0}, Case{.name = "level_2", .level = 2},
-        Case{.name = "level_3", .level = 3}, Case{.name = "level_5", .level = 5},
-        Case{.name = "tiles", .level = 6}, Case{.name = "auto_level", .level = kAutoLevel},
-        Case{.name = "tangent_space", .space = DisplacementSpace::tangent},
-        Case{.name = "tangent_auto", .space = DisplacementSpace::tangent, .level = kAutoLevel},
-        Case{.name = "frames_of_the_file",
-             .space = DisplacementSpace::tangent,
-             .level = kAutoLevel,
-             .frame = FrameKind::file},
-        Case{.name = "relative_lengths",
-             .space = DisplacementSpace::tangent,
-             .level = kAutoLevel,
-             .lengths = FrameLengths::relative},
-        Case{.name = "relative_lengths_of_dpdu_smooth",
-             .space = DisplacementSpace::tangent,
-             .scheme = SubdivisionScheme::catmark,
-             .frame = FrameKind::dpdu,
-             .lengths = FrameLengths::relative},
-        Case{.name = "smooth_base", .scheme = SubdivisionScheme::catmark},
-        Case{.name = "smooth_base_tangent_auto",
-             .space = DisplacementSpace::tangent,
-             .level = kAutoLevel,
-             .scheme = SubdivisionScheme::catmark},
-        Case{.name = "smooth_base_tiles_fused",
-             .level = 6,
-             .bottom = BottomForm::fused,
-             .scheme = SubdivisionScheme::catmark},
-        Case{.name = "filtered_level_2", .level = 2, .filter = MapFilter::mip},
-        Case{.name = "filtered_tangent_auto",
-             .space = DisplacementSpace::tangent,
-             .level = kAutoLevel,
-             .filter = MapFilter::mip},
-        Case{.name = "cubic_level_3", .level = 3, .filter = MapFilter::cubic},
-        Case{.name = "cubic_tangent_auto_fused",
-             .space = DisplacementSpace::tangent,
-             .level = kAutoLevel,
-             .bottom = BottomForm::fused,
-             .filter = MapFilter::cubic},
-        Case{.name = "bspline_tiles_on_smooth_base",
-             .level = 6,
-             .scheme = SubdivisionScheme::catmark,
-             .filter = MapFilter::bspline},
-        Case{.name = "box_leaves", .leaf = LeafKind::box},
-        Case{.name = "box_auto", .level = kAutoLevel, .leaf = LeafKind::box},
-        Case{.name = "fused", .bottom = BottomForm::fused},
-        Case{.name = "fused_tiles_box", .level = 6, .leaf = LeafKind::box, .bottom = BottomForm::fused},
-        Case{.name = "no_cache", .cache_bytes = 0},
-        Case{.name = "fused_without_cache",
-             .level = kAutoLevel,
-             .bottom = BottomForm::fused,
-             .cache_bytes = 0},
-        Case{.name = "one_patch_a_round", .pair_capacity = 64, .slots = 1},
-        Case{.name = "many_chunks", .level = 3, .pair_capacity = 512, .slots = 8},
-        Case{.name = "all_left_collected", .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
-        Case{.name = "tiles_collected", .level = 6, .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
-        Case{.name = "too_many_to_collect", .pair_capacity = 3000, .slots = 1, .collected = 2},
-        Case{.name = "trees_of_large_groups", .level = kAutoLevel, .builds_as_gpu = true},
-        Case{.name = "leaves_of_large_groups", .level = 0, .builds_as_gpu = true},
-        Case{.name = "small_trees_of_large_groups", .level = 1, .builds_as_gpu = true},
-        Case{.name = "tiles_of_large_groups", .level = 6, .builds_as_gpu = true},
-        Case{.name = "level_a_ray", .level = kAutoLevel, .lod = LodRule::ray},
-        Case{.name = "many_waves", .level = 6, .cache_bytes = 1}),
+        TracerCase{.name = "room_for_one_ray", .pair_capacity = 4, .rays = 24},
+        TracerCase{.name = "places_numbered_afresh", .level = 5, .pair_capacity = 1024, .restart_units = 1},
+        TracerCase{.name = "level_0", .level = 0}, TracerCase{.name = "level_2", .level = 2},
+        TracerCase{.name = "level_3", .level = 3}, TracerCase{.name = "level_5", .level = 5},
+        TracerCase{.name = "tiles", .level = 6}, TracerCase{.name = "auto_level", .level = kAutoLevel},
+        TracerCase{.name = "tangent_space", .space = DisplacementSpace::tangent},
+        TracerCase{.name = "tangent_auto", .space = DisplacementSpace::tangent, .level = kAutoLevel},
+        TracerCase{.name = "frames_of_the_file",
+                   .space = DisplacementSpace::tangent,
+                   .level = kAutoLevel,
+                   .frame = FrameKind::file},
+        TracerCase{.name = "relative_lengths",
+                   .space = DisplacementSpace::tangent,
+                   .level = kAutoLevel,
+                   .lengths = FrameLengths::relative},
+        TracerCase{.name = "relative_lengths_of_dpdu_smooth",
+                   .space = DisplacementSpace::tangent,
+                   .scheme = SubdivisionScheme::catmark,
+                   .frame = FrameKind::dpdu,
+                   .lengths = FrameLengths::relative},
+        TracerCase{.name = "smooth_base", .scheme = SubdivisionScheme::catmark},
+        TracerCase{.name = "smooth_base_tangent_auto",
+                   .space = DisplacementSpace::tangent,
+                   .level = kAutoLevel,
+                   .scheme = SubdivisionScheme::catmark},
+        TracerCase{.name = "smooth_base_tiles_fused",
+                   .level = 6,
+                   .bottom = BottomForm::fused,
+                   .scheme = SubdivisionScheme::catmark},
+        TracerCase{.name = "filtered_level_2", .level = 2, .filter = MapFilter::mip},
+        TracerCase{.name = "filtered_tangent_auto",
+                   .space = DisplacementSpace::tangent,
+                   .level = kAutoLevel,
+                   .filter = MapFilter::mip},
+        TracerCase{.name = "cubic_level_3", .level = 3, .filter = MapFilter::cubic},
+        TracerCase{.name = "cubic_tangent_auto_fused",
+                   .space = DisplacementSpace::tangent,
+                   .level = kAutoLevel,
+                   .bottom = BottomForm::fused,
+                   .filter = MapFilter::cubic},
+        TracerCase{.name = "bspline_tiles_on_smooth_base",
+                   .level = 6,
+                   .scheme = SubdivisionScheme::catmark,
+                   .filter = MapFilter::bspline},
+        TracerCase{.name = "box_leaves", .leaf = LeafKind::box},
+        TracerCase{.name = "box_auto", .level = kAutoLevel, .leaf = LeafKind::box},
+        TracerCase{.name = "fused", .bottom = BottomForm::fused},
+        TracerCase{.name = "fused_tiles_box", .level = 6, .leaf = LeafKind::box, .bottom = BottomForm::fused},
+        TracerCase{.name = "no_cache", .cache_bytes = 0},
+        TracerCase{.name = "fused_without_cache",
+                   .level = kAutoLevel,
+                   .bottom = BottomForm::fused,
+                   .cache_bytes = 0},
+        TracerCase{.name = "one_patch_a_round", .pair_capacity = 64, .slots = 1},
+        TracerCase{.name = "many_chunks", .level = 3, .pair_capacity = 512, .slots = 8},
+        TracerCase{.name = "all_left_collected", .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
+        TracerCase{
+            .name = "tiles_collected", .level = 6, .pair_capacity = 1u << 18, .slots = 1, .collected = 128},
+        TracerCase{.name = "too_many_to_collect", .pair_capacity = 3000, .slots = 1, .collected = 2},
+        TracerCase{.name = "trees_of_large_groups", .level = kAutoLevel, .builds_as_gpu = true},
+        TracerCase{.name = "leaves_of_large_groups", .level = 0, .builds_as_gpu = true},
+        TracerCase{.name = "small_trees_of_large_groups", .level = 1, .builds_as_gpu = true},
+        TracerCase{.name = "tiles_of_large_groups", .level = 6, .builds_as_gpu = true},
+        TracerCase{.name = "level_a_ray", .level = kAutoLevel, .lod = LodRule::ray},
+        TracerCase{.name = "many_waves", .level = 6, .cache_bytes = 1}),
     [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace
