@@ -3,7 +3,7 @@
 #ifndef __cplusplus
 #include "formulas/lang.h"
 #elif defined(RELIEF_LANES)
-#define FN HWY_INLINE
+#define FN RELIEF_INLINE
 #define In(Type) const Type&
 #define EXACT
 #else

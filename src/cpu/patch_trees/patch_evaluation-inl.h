@@ -27,7 +27,7 @@ struct TileRange {
 };
 
 /// All rows and columns of the tile; those on a border of the patch are left to evaluate_border.
-HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range, VertexGrid& grid) {
+RELIEF_INLINE void evaluate_interior(const Surface& surface, const TileRange& range, VertexGrid& grid) {
     const MapImage image{surface.tile(surface.quads[range.patch].vertex[0]),
                          scalar::packed_mip(surface.packed_mips(range.patch), scalar::kMipInside)};
     const PatchValues patch(surface, range.patch);
@@ -60,8 +60,8 @@ HWY_INLINE void evaluate_interior(const Surface& surface, const TileRange& range
 }
 
 /// Samples of one border of the tile, on patch edge `edge`; `samples`: the patch, unpacked once.
-HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, int edge,
-                                std::optional<PatchSamples>& samples, VertexGrid& grid) {
+RELIEF_INLINE void evaluate_border(const Surface& surface, const TileRange& range, int edge,
+                                   std::optional<PatchSamples>& samples, VertexGrid& grid) {
     const uint32_t n = range.side(), step = n >> range.levels.edge[size_t(edge)];
     const Surface::EdgeLine line = surface.edge_line(range.patch, edge);
     const std::array<Vec3f, 2> controls = surface.line_controls(range.patch, edge, line);
@@ -102,7 +102,7 @@ HWY_INLINE void evaluate_border(const Surface& surface, const TileRange& range, 
     }
 }
 
-HWY_INLINE void evaluate_tile(const Surface& surface, const TileRange& range, VertexGrid& grid) {
+RELIEF_INLINE void evaluate_tile(const Surface& surface, const TileRange& range, VertexGrid& grid) {
     if (!can_evaluate_wide(surface, range.patch)) {
         for (uint32_t r = 0; r <= range.cell_count; ++r)
             for (uint32_t c = 0; c <= range.cell_count; ++c) {

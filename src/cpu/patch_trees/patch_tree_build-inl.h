@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 /// The grid without its padding; see PatchTree::column_count.
-HWY_INLINE void fill_vertices(const VertexGrid& grid, cpu::PatchTree& tree) {
+RELIEF_INLINE void fill_vertices(const VertexGrid& grid, cpu::PatchTree& tree) {
     const int level = int(tree.level);
     const uint32_t cells = 1u << level, columns = cpu::PatchTree::column_count(level),
                    rows = cpu::PatchTree::row_count(level);
@@ -28,8 +28,8 @@ HWY_INLINE void fill_vertices(const VertexGrid& grid, cpu::PatchTree& tree) {
 
 /// Box of five columns of vertices, into one slot of a node.
 template <size_t W>
-HWY_INLINE void store_box(const cpu::PatchTree& tree, uint32_t first, uint32_t rows, float (&bounds)[6][W],
-                          uint32_t slot) {
+RELIEF_INLINE void store_box(const cpu::PatchTree& tree, uint32_t first, uint32_t rows, float (&bounds)[6][W],
+                             uint32_t slot) {
     const uint32_t columns = cpu::PatchTree::column_count(int(tree.level));
     for (int axis = 0; axis < 3; ++axis) {
         const float* v = tree.vertices(axis) + first;
@@ -45,14 +45,14 @@ HWY_INLINE void store_box(const cpu::PatchTree& tree, uint32_t first, uint32_t r
 
 /// What holds all of `boxes`, into one slot of the node above.
 template <size_t W>
-HWY_INLINE void store_union(const float (&boxes)[6][W], cpu::Node16& above, uint32_t slot) {
+RELIEF_INLINE void store_union(const float (&boxes)[6][W], cpu::Node16& above, uint32_t slot) {
     for (int axis = 0; axis < 3; ++axis) {
         above.bounds[axis][slot] = reduce_min(Lanes<W>::load(boxes[axis]));
         above.bounds[3 + axis][slot] = reduce_max(Lanes<W>::load(boxes[3 + axis]));
     }
 }
 
-template <int kLevel> HWY_INLINE void build_nodes(cpu::PatchTree& tree) {
+template <int kLevel> RELIEF_INLINE void build_nodes(cpu::PatchTree& tree) {
     using Shape = cpu::TreeShape<kLevel>;
     for (uint32_t g = 0; g < (Shape::kHasGroups ? 16 : 1); ++g) {
         auto& node = tree.node<kLevel>(g);
@@ -65,7 +65,7 @@ template <int kLevel> HWY_INLINE void build_nodes(cpu::PatchTree& tree) {
     }
 }
 
-HWY_INLINE void build_boxes(cpu::PatchTree& tree) {
+RELIEF_INLINE void build_boxes(cpu::PatchTree& tree) {
     if (tree.level == 6) build_nodes<6>(tree);
     if (tree.level == 5) build_nodes<5>(tree);
     if (tree.level == 4) build_nodes<4>(tree);
@@ -73,7 +73,7 @@ HWY_INLINE void build_boxes(cpu::PatchTree& tree) {
 }
 
 /// Extends `box` by (cells + 1)^2 vertices.
-HWY_INLINE void extend_by_grid(Box& box, const VertexGrid& grid, uint32_t cells) {
+RELIEF_INLINE void extend_by_grid(Box& box, const VertexGrid& grid, uint32_t cells) {
     for (int axis = 0; axis < 3; ++axis) {
         Lanes4 least(get_component(box.lower, axis)), greatest(get_component(box.upper, axis));
         const auto extend = [&](const Lanes4& v) { least = min(least, v), greatest = max(greatest, v); };

@@ -26,14 +26,14 @@ struct Interval {
 };
 
 /// Number of the guide of a random number; its distribution's guides begin at `first`.
-HWY_INLINE Uint locate_guide(const Uint& first, const Float& u) {
+RELIEF_INLINE Uint locate_guide(const Uint& first, const Float& u) {
     const float count = float(cpu::EnvironmentTables::kGuides);
     return first + Uint(min(u * Float(count), Float(count - 1)));
 }
 
 /// The distribution begins at cumulative[first].
-HWY_INLINE Interval find_interval(const float* cumulative, const Uint& first, const Uint& guide,
-                                  const Float& u) {
+RELIEF_INLINE Interval find_interval(const float* cumulative, const Uint& first, const Uint& guide,
+                                     const Float& u) {
     Uint index = first + (guide & Uint(0xffffu)), length = (guide >> 16) - (guide & Uint(0xffffu));
     while (!length.is_zero()) {
         const Uint half = (length + Uint(1u)) >> 1;
@@ -45,8 +45,8 @@ HWY_INLINE Interval find_interval(const float* cumulative, const Uint& first, co
 }
 
 /// Density per solid angle of directions in cells.
-HWY_INLINE Float find_cell_density(const cpu::EnvironmentTables& tables, const Uint& column, const Uint& row,
-                                   const Vec3& direction) {
+RELIEF_INLINE Float find_cell_density(const cpu::EnvironmentTables& tables, const Uint& column,
+                                      const Uint& row, const Vec3& direction) {
     const Uint cell = row * Uint(tables.data.cells_x + 1) + column;
     const auto find_share = [](const float* cumulative, const Uint& index) HWY_ATTR {
         return gather(cumulative, index + Uint(1u)) - gather(cumulative, index);
@@ -60,7 +60,7 @@ struct ImagePlaces {
     alignas(64) uint32_t left[16], right[16], top[16], bottom[16]; ///< columns; rows times the width
     alignas(64) float fx[16], fy[16];
 
-    HWY_INLINE void locate(const Texture& texture, const Vec2& position) {
+    RELIEF_INLINE void locate(const Texture& texture, const Vec2& position) {
         const Float zero(0.0f), one(1.0f);
         const Float width(float(texture.width)), height(float(texture.height));
         const Vec2 at = locate_latlong(position, {width, height});
@@ -77,7 +77,7 @@ struct ImagePlaces {
         store(min(y + one, height - one), texture.height, texture.width, bottom);
     }
 
-    HWY_INLINE void prefetch(const Texture& texture, LaneMask which) const {
+    RELIEF_INLINE void prefetch(const Texture& texture, LaneMask which) const {
         for (; which != 0; which &= which - 1) {
             const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(which);
             // Both texels of a row mostly share a line of the cache.
@@ -87,7 +87,7 @@ struct ImagePlaces {
     }
 
     /// Radiance, bilinear; of the other lanes 0.
-    HWY_INLINE Vec3 fetch(const cpu::EnvironmentTables& tables, LaneMask which) const {
+    RELIEF_INLINE Vec3 fetch(const cpu::EnvironmentTables& tables, LaneMask which) const {
         const Texture& texture = *tables.texture;
         LaneQuads colors;
         if (which != 0xffffu) std::memset(&colors, 0, sizeof colors);
@@ -109,7 +109,7 @@ struct ImagePlaces {
 };
 
 /// Calls step(round, first, count - first) per sixteen, in rounds: each step prefetches for the next.
-template <class Round, class... Steps> HWY_INLINE void run_rounds(size_t count, Steps... steps) {
+template <class Round, class... Steps> RELIEF_INLINE void run_rounds(size_t count, Steps... steps) {
     constexpr size_t kRounds = 4;
     for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
         Round rounds[kRounds];
@@ -165,7 +165,7 @@ inline void fetch_environment(const cpu::EnvironmentTables& tables, const Vec2f*
     run_rounds<ImagePlaces>(count, locate, fetch);
 }
 
-template <class T> HWY_INLINE void prefetch(const T* base, const Uint& index) {
+template <class T> RELIEF_INLINE void prefetch(const T* base, const Uint& index) {
     alignas(64) uint32_t stored[16];
     index.store(stored);
     for (const uint32_t k : stored) __builtin_prefetch(base + k);
@@ -177,7 +177,7 @@ struct DrawLanes {
     Interval row;
     Uint guide, first; ///< of the cells of the row
 
-    HWY_INLINE void find_row(const cpu::EnvironmentTables& tables, const Vec2f* pairs, size_t count) {
+    RELIEF_INLINE void find_row(const cpu::EnvironmentTables& tables, const Vec2f* pairs, size_t count) {
         const uint32_t guides = cpu::EnvironmentTables::kGuides;
         u = load_pairs(pairs, count);
         const Uint guide_of_rows = locate_guide(Uint(tables.data.cells_y * guides), u.y);
@@ -186,12 +186,12 @@ struct DrawLanes {
         guide = locate_guide(row.index * Uint(guides), u.x);
         prefetch(tables.guides, guide);
     }
-    HWY_INLINE void find_guide(const cpu::EnvironmentTables& tables) {
+    RELIEF_INLINE void find_guide(const cpu::EnvironmentTables& tables) {
         guide = gather(tables.guides, guide);
         prefetch(tables.columns, first + (guide & Uint(0xffffu)));
     }
-    HWY_INLINE void finish(const cpu::EnvironmentTables& tables, size_t count,
-                           cpu::DirectionSample* drawn) const {
+    RELIEF_INLINE void finish(const cpu::EnvironmentTables& tables, size_t count,
+                              cpu::DirectionSample* drawn) const {
         const EnvironmentData& data = tables.data;
         const Interval column = find_interval(tables.columns, first, guide, u.x);
         const Vec2 position{(Float(column.index) + column.position) / Float(float(data.cells_x)),

@@ -18,7 +18,7 @@ namespace wide {
 // clang-format on
 #undef RELIEF_LANES
 
-HWY_INLINE GlassParameters gather_glass(const scalar::GlassParameters* records, const Uint& index) {
+RELIEF_INLINE GlassParameters gather_glass(const scalar::GlassParameters* records, const Uint& index) {
     static_assert(sizeof(GlassParameters) == 16 * sizeof(scalar::GlassParameters));
     RecordReader from(records, index);
     GlassParameters g;
@@ -37,18 +37,18 @@ struct GlassLanes {
 };
 
 /// Whether a direction is on one side of the surface and of the shading normal.
-HWY_INLINE Bool is_on_one_side(const PointLanes& point, const Vec3& direction, const Vec3& local) {
+RELIEF_INLINE Bool is_on_one_side(const PointLanes& point, const Vec3& direction, const Vec3& local) {
     const Float height = dot(direction, point.geometric_normal), zero(0.0f);
     return (height > zero && local.z > zero) || (height < zero && local.z < zero);
 }
 
 /// `mask` in the lanes of glass, `others` in the others.
-HWY_INLINE LaneMask join_masks(const GlassLanes& glass, const Bool& mask, LaneMask others) {
+RELIEF_INLINE LaneMask join_masks(const GlassLanes& glass, const Bool& mask, LaneMask others) {
     const LaneMask lanes = to_mask(glass.is_glass);
     return (to_mask(mask) & lanes) | (others & ~lanes);
 }
 
-HWY_INLINE void reflect_light(const PointLanes& point, const GlassLanes& glass, cpu::VertexLanes& v) {
+RELIEF_INLINE void reflect_light(const PointLanes& point, const GlassLanes& glass, cpu::VertexLanes& v) {
     const Vec3 direction = load_vectors(v.light_direction);
     const Vec3 wi = to_local(glass.basis, direction);
     const BsdfValue toward = evaluate_glass_bsdf(glass.bsdf, glass.wo_local, wi);
@@ -59,8 +59,8 @@ HWY_INLINE void reflect_light(const PointLanes& point, const GlassLanes& glass, 
     select(glass.is_glass, toward.pdf, Float::load(v.light_bsdf_pdf)).store(v.light_bsdf_pdf);
 }
 
-HWY_INLINE void reflect_path(const PointLanes& point, const GlassLanes& glass, const Float& u_lobe,
-                             const Vec2& u, cpu::VertexLanes& v) {
+RELIEF_INLINE void reflect_path(const PointLanes& point, const GlassLanes& glass, const Float& u_lobe,
+                                const Vec2& u, cpu::VertexLanes& v) {
     const BsdfSample drawn = sample_glass_bsdf(glass.bsdf, glass.wo_local, u_lobe, u);
     const Vec3 direction = make_unit(from_local(glass.basis, drawn.direction));
     const Bool goes_on = !is_black(drawn.weight) && is_on_one_side(point, direction, drawn.direction);

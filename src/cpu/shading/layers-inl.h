@@ -14,15 +14,15 @@ struct LayerTable {
 };
 
 /// Of any index: what lies beyond the table is not read.
-HWY_INLINE Vec2 read_layer_entry(const LayerTable& table, const Uint& index) {
+RELIEF_INLINE Vec2 read_layer_entry(const LayerTable& table, const Uint& index) {
     const Uint place = min(index, Uint(table.count - 1)) << 1;
     return {gather(table.entries, place), gather(table.entries + 1, place)};
 }
 
-HWY_INLINE Uint floatBitsToUint(const Float& a) {
+RELIEF_INLINE Uint floatBitsToUint(const Float& a) {
     RELIEF_RETURN_PARTS(Uint, hn::BitCast(Uint::D(), a.part[p]));
 }
-HWY_INLINE Float uintBitsToFloat(const Uint& a) {
+RELIEF_INLINE Float uintBitsToFloat(const Uint& a) {
     RELIEF_RETURN_PARTS(Float, hn::BitCast(Float::D(), a.part[p]));
 }
 
@@ -47,19 +47,19 @@ class RecordReader {
         : next_(reinterpret_cast<const float*>(records)),
           first_(index * Uint(sizeof(Record) / sizeof(float))) {}
 
-    HWY_INLINE Float read() { return gather(next_++, first_); }
-    HWY_INLINE Vec3 read_vector() {
+    RELIEF_INLINE Float read() { return gather(next_++, first_); }
+    RELIEF_INLINE Vec3 read_vector() {
         const Float x = read(), y = read();
         return {x, y, read()};
     }
-    HWY_INLINE Uint read_integer() { return floatBitsToUint(read()); }
+    RELIEF_INLINE Uint read_integer() { return floatBitsToUint(read()); }
 
   private:
     const float* next_;
     Uint first_;
 };
 
-HWY_INLINE LayerParameters gather_layers(const scalar::LayerParameters* records, const Uint& index) {
+RELIEF_INLINE LayerParameters gather_layers(const scalar::LayerParameters* records, const Uint& index) {
     static_assert(sizeof(LayerParameters) == 16 * sizeof(scalar::LayerParameters));
     RecordReader from(records, index);
     LayerParameters l;
@@ -87,7 +87,7 @@ struct LayeredLanes {
     Bool has_layers;
 };
 
-HWY_INLINE void reflect_light(const PointLanes& point, const LayeredLanes& layered, cpu::VertexLanes& v) {
+RELIEF_INLINE void reflect_light(const PointLanes& point, const LayeredLanes& layered, cpu::VertexLanes& v) {
     const Vec3 direction = load_vectors(v.light_direction);
     BsdfValue toward = evaluate_layered_bsdf(layered.bsdf, layered.table, layered.wo_local,
                                              to_local(layered.basis, direction));
@@ -96,8 +96,8 @@ HWY_INLINE void reflect_light(const PointLanes& point, const LayeredLanes& layer
     store_light(point, direction, toward, v);
 }
 
-HWY_INLINE void reflect_path(const PointLanes& point, const LayeredLanes& layered, const Float& u_lobe,
-                             const Vec2& u, cpu::VertexLanes& v) {
+RELIEF_INLINE void reflect_path(const PointLanes& point, const LayeredLanes& layered, const Float& u_lobe,
+                                const Vec2& u, cpu::VertexLanes& v) {
     const BsdfSample drawn = sample_layered_bsdf(layered.bsdf, layered.table, layered.wo_local, u_lobe, u);
     const Vec3 direction = make_unit(from_local(layered.basis, drawn.direction));
     store_path(point, select(layered.has_layers, direction, load_vectors(v.bounce_direction)),
@@ -105,8 +105,8 @@ HWY_INLINE void reflect_path(const PointLanes& point, const LayeredLanes& layere
                select(layered.has_layers, drawn.pdf, Float::load(v.bounce_pdf)), v);
 }
 
-HWY_INLINE LayeredLanes make_layered_lanes(const cpu::VertexBatch& batch, const Basis& basis,
-                                           const Vec3& wo_local, const cpu::VertexLanes& v) {
+RELIEF_INLINE LayeredLanes make_layered_lanes(const cpu::VertexBatch& batch, const Basis& basis,
+                                              const Vec3& wo_local, const cpu::VertexLanes& v) {
     const LaneMask lanes = v.has_layers & first_lanes(batch.count);
     LayeredLanes layered{.basis = basis, .wo_local = wo_local};
     layered.table = {&batch.layers.entries->x, batch.layers.entry_count};

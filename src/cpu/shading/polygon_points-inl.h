@@ -12,7 +12,7 @@ struct PolygonCorner {
     LaneQuads place;  ///< position, u
     LaneQuads normal; ///< v, octahedral coordinates of the normal
 
-    HWY_INLINE void load(const Surface& surface, uint32_t vertex, size_t lane) {
+    RELIEF_INLINE void load(const Surface& surface, uint32_t vertex, size_t lane) {
         const Vec3f& p = surface.position(vertex);
         const Vec2f uv = surface.uvs.empty() ? Vec2f{} : surface.uvs[vertex];
         const Vec2f folded =
@@ -27,7 +27,7 @@ struct WideCorner {
     WideVec3 position, normal;
     WideVec2 uv;
 
-    HWY_INLINE explicit WideCorner(const PolygonCorner& corner) {
+    RELIEF_INLINE explicit WideCorner(const PolygonCorner& corner) {
         Lanes16 x, y, unused;
         corner.place.transpose(position.x, position.y, position.z, uv.x);
         corner.normal.transpose(uv.y, x, y, unused);
@@ -36,8 +36,8 @@ struct WideCorner {
 };
 
 /// compute_shading_normal (surface/patch/shading_normal.cpp) of each lane.
-HWY_INLINE WideVec3 blend_polygon_normals(const Surface& surface, const WideCorner (&c)[4],
-                                          const wide::Bool& is_triangle, const WideVec2& at) {
+RELIEF_INLINE WideVec3 blend_polygon_normals(const Surface& surface, const WideCorner (&c)[4],
+                                             const wide::Bool& is_triangle, const WideVec2& at) {
     const Lanes16 zero(0.0f);
     if (surface.frames.empty()) return {zero, zero, zero};
     // The triangle that the place is in, whatever the hit says.

@@ -16,15 +16,15 @@ struct Scattering {
     Bsdf bsdf;
 };
 
-HWY_INLINE void reflect_light(const PointLanes& point, const Scattering& scattering, cpu::VertexLanes& v) {
+RELIEF_INLINE void reflect_light(const PointLanes& point, const Scattering& scattering, cpu::VertexLanes& v) {
     const Vec3 direction = load_vectors(v.light_direction);
     store_light(point, direction,
                 evaluate_bsdf(scattering.bsdf, scattering.wo_local, to_local(scattering.basis, direction)),
                 v);
 }
 
-HWY_INLINE void reflect_path(const PointLanes& point, const Scattering& scattering, const Float& u_lobe,
-                             const Vec2& u, cpu::VertexLanes& v) {
+RELIEF_INLINE void reflect_path(const PointLanes& point, const Scattering& scattering, const Float& u_lobe,
+                                const Vec2& u, cpu::VertexLanes& v) {
     const BsdfSample drawn = sample_bsdf(scattering.bsdf, scattering.wo_local, u_lobe, u);
     store_path(point, make_unit(from_local(scattering.basis, drawn.direction)), drawn.weight, drawn.pdf, v);
 }

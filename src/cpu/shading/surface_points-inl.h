@@ -33,13 +33,13 @@ struct HitLanes {
     LaneMask is_foreign[3];
 
     /// What no hit is loaded into stays without divisions by 0.
-    HWY_INLINE void clear() {
+    RELIEF_INLINE void clear() {
         std::memset(this, 0, sizeof *this);
         for (size_t lane = 0; lane < 16; ++lane) side[lane] = normal_side[lane] = 1;
     }
 };
 
-HWY_INLINE void load_quads(const void* source, size_t lane, LaneQuads* quads, size_t count) {
+RELIEF_INLINE void load_quads(const void* source, size_t lane, LaneQuads* quads, size_t count) {
     for (size_t q = 0; q < count; ++q)
         std::memcpy(quads[q].lane[lane], static_cast<const char*>(source) + 16 * q, 16);
 }
@@ -77,8 +77,8 @@ inline void load_cell_vertex(const PatchSamples& samples, const PatchLevels& lev
 }
 
 /// Where on its patch, and in the world, a hit is.
-HWY_INLINE void load_place(const Instance& instance, const cpu::TraceHit& hit, const PatchLevels& levels,
-                           size_t lane, HitLanes& lanes) {
+RELIEF_INLINE void load_place(const Instance& instance, const cpu::TraceHit& hit, const PatchLevels& levels,
+                              size_t lane, HitLanes& lanes) {
     load_quads(&instance.world_from_object, lane, lanes.world_from_object, 3);
     load_quads(&instance.object_space.from_origin, lane, lanes.object_from_origin, 3);
     lanes.u[lane] = hit.u, lanes.v[lane] = hit.v;
@@ -111,7 +111,7 @@ inline void load_hit(const cpu::PointBatch& batch, const cpu::TraceHit& hit, siz
 struct BaseLanes {
     Lanes16 control[16][3]; ///< by number (formulas/control_points.h) and axis
 
-    HWY_INLINE void load(const HitLanes& lanes, const Lanes16 (&corners)[4][16]) {
+    RELIEF_INLINE void load(const HitLanes& lanes, const Lanes16 (&corners)[4][16]) {
         Lanes16 inner[36];
         for (int q = 0; q < 9; ++q)
             lanes.controls[q].transpose(inner[4 * q], inner[4 * q + 1], inner[4 * q + 2], inner[4 * q + 3]);
@@ -119,10 +119,10 @@ struct BaseLanes {
             for (int axis = 0; axis < 3; ++axis)
                 control[k][axis] = k < 4 ? corners[k][kPosition + axis] : inner[3 * (k - 4) + axis];
     }
-    HWY_INLINE const Lanes16& at(uint32_t column, uint32_t row, int axis) const {
+    RELIEF_INLINE const Lanes16& at(uint32_t column, uint32_t row, int axis) const {
         return control[scalar::find_control_point(column, row)][axis];
     }
-    HWY_INLINE WideVec3 evaluate(const WideVec2& place) const {
+    RELIEF_INLINE WideVec3 evaluate(const WideVec2& place) const {
         const wide::CubicWeights along = wide::weigh_cubic(place.x), across = wide::weigh_cubic(place.y);
         Lanes16 result[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -135,7 +135,7 @@ struct BaseLanes {
         return {result[0], result[1], result[2]};
     }
     /// Along u, or v.
-    template <bool kIsAlongU> HWY_INLINE WideVec3 differentiate(const WideVec2& place) const {
+    template <bool kIsAlongU> RELIEF_INLINE WideVec3 differentiate(const WideVec2& place) const {
         const wide::CubicWeights across = wide::weigh_cubic(kIsAlongU ? place.y : place.x);
         Lanes16 result[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -159,7 +159,7 @@ struct CornerLanes {
     bool is_bicubic;
     BaseLanes base; ///< where it is bicubic
 
-    HWY_INLINE CornerLanes(const HitLanes& lanes, const Surface& surface)
+    RELIEF_INLINE CornerLanes(const HitLanes& lanes, const Surface& surface)
         : is_bicubic(!surface.controls.empty()) {
         for (int k = 0; k < 4; ++k)
             for (int q = 0; q < 4; ++q)
@@ -167,20 +167,20 @@ struct CornerLanes {
                                              value[k][4 * q + 3]);
         if (is_bicubic) base.load(lanes, value);
     }
-    HWY_INLINE WideVec3 blend_position(const WideVec2& at) const {
+    RELIEF_INLINE WideVec3 blend_position(const WideVec2& at) const {
         return is_bicubic ? base.evaluate(at) : blend_vector(kPosition, at);
     }
-    HWY_INLINE Lanes16 blend(int k, const WideVec2& at) const {
+    RELIEF_INLINE Lanes16 blend(int k, const WideVec2& at) const {
         return wide::blend_quad(value[0][k], value[1][k], value[2][k], value[3][k], at.x, at.y);
     }
-    HWY_INLINE WideVec3 blend_vector(int k, const WideVec2& at) const {
+    RELIEF_INLINE WideVec3 blend_vector(int k, const WideVec2& at) const {
         return {blend(k, at), blend(k + 1, at), blend(k + 2, at)};
     }
-    HWY_INLINE WideVec3 vector(int corner, int k) const {
+    RELIEF_INLINE WideVec3 vector(int corner, int k) const {
         return {value[corner][k], value[corner][k + 1], value[corner][k + 2]};
     }
     /// Difference of a vector from corner a to b and, far away, from c to d.
-    HWY_INLINE WideVec3 blend_difference(int k, const int (&abcd)[4], const Lanes16& s) const {
+    RELIEF_INLINE WideVec3 blend_difference(int k, const int (&abcd)[4], const Lanes16& s) const {
         return wide::blend_difference(vector(abcd[0], k), vector(abcd[1], k), vector(abcd[2], k),
                                       vector(abcd[3], k), s);
     }
@@ -193,8 +193,8 @@ struct MapLanes {
 };
 
 /// Decoded displacement at a place of each patch.
-HWY_INLINE WideVec3 fetch_decoded(const DisplacementMap& map, const MapImage& image,
-                                  const CornerLanes& corners, const WideVec2& at) {
+RELIEF_INLINE WideVec3 fetch_decoded(const DisplacementMap& map, const MapImage& image,
+                                     const CornerLanes& corners, const WideVec2& at) {
     Lanes16 raw[3];
     fetch_channels<Spacing::wide>(map, image, corners.blend(kUv, at), corners.blend(kUv + 1, at), raw);
     raw[0] = raw[0] - Lanes16(map.midlevel.x);
@@ -207,8 +207,8 @@ HWY_INLINE WideVec3 fetch_decoded(const DisplacementMap& map, const MapImage& im
     return {decode(0), decode(1), decode(2)};
 }
 
-HWY_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes& corners,
-                                        const WideVec2& at) {
+RELIEF_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes& corners,
+                                           const WideVec2& at) {
     const WideVec3 base = corners.blend_position(at), d = fetch_decoded(from.map, from.inside, corners, at);
     if (!from.map.is_tangent) return base + d;
     const WideVec3 t = corners.blend_vector(kFrame, at), b = corners.blend_vector(kFrame + 3, at),
@@ -218,8 +218,8 @@ HWY_INLINE WideVec3 evaluate_own_vertex(const MapLanes& from, const CornerLanes&
             base.z + wide::carry_through_frame(d.x, d.y, d.z, t.z, b.z, n.z)};
 }
 
-HWY_INLINE WideVec3 evaluate_cell_vertex(const HitLanes& lanes, const MapLanes& from,
-                                         const CornerLanes& corners, int vertex) {
+RELIEF_INLINE WideVec3 evaluate_cell_vertex(const HitLanes& lanes, const MapLanes& from,
+                                            const CornerLanes& corners, int vertex) {
     const WideVec3 own = evaluate_own_vertex(
         from, corners, {Lanes16::load(lanes.vertex_u[vertex]), Lanes16::load(lanes.vertex_v[vertex])});
     LaneMask which = lanes.is_foreign[vertex];
@@ -236,12 +236,12 @@ HWY_INLINE WideVec3 evaluate_cell_vertex(const HitLanes& lanes, const MapLanes& 
 struct AffineLanes {
     WideVec3 rows[3], translation;
 
-    HWY_INLINE explicit AffineLanes(const LaneQuads (&quads)[3]) {
+    RELIEF_INLINE explicit AffineLanes(const LaneQuads (&quads)[3]) {
         quads[0].transpose(rows[0].x, rows[0].y, rows[0].z, rows[1].x);
         quads[1].transpose(rows[1].y, rows[1].z, rows[2].x, rows[2].y);
         quads[2].transpose(rows[2].z, translation.x, translation.y, translation.z);
     }
-    HWY_INLINE WideVec3 transform_vector(const WideVec3& v) const {
+    RELIEF_INLINE WideVec3 transform_vector(const WideVec3& v) const {
         return {wide::dot(rows[0], v), wide::dot(rows[1], v), wide::dot(rows[2], v)};
     }
 };
@@ -252,8 +252,8 @@ struct CellPointLanes {
 };
 
 /// Of the triangles a, b, c of sixteen cells; `uv_area`: their share of the patch's (u, v).
-HWY_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const WideVec3& a, const WideVec3& b,
-                                          const WideVec3& c, const Lanes16& uv_area) {
+RELIEF_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const WideVec3& a, const WideVec3& b,
+                                             const WideVec3& c, const Lanes16& uv_area) {
     const Lanes16 side = Lanes16::load(lanes.side);
     const wide::Bool is_upper = wide::is_set(lanes.is_upper);
     const wide::CornerWeights weights =
@@ -274,8 +274,8 @@ HWY_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const WideVec3&
     return point;
 }
 
-HWY_INLINE wide::SurfaceDerivative differentiate(const MapLanes& from, const CornerLanes& corners,
-                                                 const int (&abcd)[4], const Lanes16& s) {
+RELIEF_INLINE wide::SurfaceDerivative differentiate(const MapLanes& from, const CornerLanes& corners,
+                                                    const int (&abcd)[4], const Lanes16& s) {
     wide::SurfaceDerivative along{};
     along.base = corners.blend_difference(kPosition, abcd, s);
     if (from.map.is_tangent)
@@ -286,8 +286,8 @@ HWY_INLINE wide::SurfaceDerivative differentiate(const MapLanes& from, const Cor
 }
 
 /// compute_shading_normal (surface/patch/shading_normal.cpp) of each lane.
-HWY_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLanes& from,
-                                            const CornerLanes& corners) {
+RELIEF_INLINE WideVec3 compute_shading_normals(const HitLanes& lanes, const MapLanes& from,
+                                               const CornerLanes& corners) {
     const WideVec2 at{Lanes16::load(lanes.u), Lanes16::load(lanes.v)};
     wide::SurfaceDerivative along_u = differentiate(from, corners, {0, 1, 3, 2}, at.y);
     wide::SurfaceDerivative along_v = differentiate(from, corners, {0, 3, 1, 2}, at.x);

@@ -13,7 +13,7 @@ namespace relief::HWY_NAMESPACE {
 namespace wide {
 
 /// Of any index: what lies beyond the table is not read.
-HWY_INLINE Vec2 read_ggx_table(const Uint& index) {
+RELIEF_INLINE Vec2 read_ggx_table(const Uint& index) {
     const Uint entry = min(index, Uint(scalar::kGgxEntryCount - 1));
     return {gather(scalar::kGgxScale, entry), gather(scalar::kGgxBias, entry)};
 }
@@ -32,7 +32,7 @@ struct PointLanes {
     Vec3 position, geometric_normal, shading_normal;
     Float position_error;
 
-    HWY_INLINE PointLanes(const cpu::SurfacePoint* points, size_t count) {
+    RELIEF_INLINE PointLanes(const cpu::SurfacePoint* points, size_t count) {
         static_assert(offsetof(cpu::SurfacePoint, geometric_normal) == 12 &&
                       offsetof(cpu::SurfacePoint, shading_normal) == 24);
         LaneQuads quads[3];
@@ -52,21 +52,21 @@ struct PointLanes {
 };
 
 /// The other way round than to_mask().
-HWY_INLINE Bool from_mask(LaneMask lanes) {
+RELIEF_INLINE Bool from_mask(LaneMask lanes) {
     alignas(64) float marks[16];
     for (size_t lane = 0; lane < 16; ++lane) marks[lane] = lanes >> lane & 1 ? 1 : 0;
     return is_set(marks);
 }
 
 /// Indices of records in the lanes that have one, 0 in the others.
-HWY_INLINE Uint load_indices(const uint32_t (&indices)[16], LaneMask lanes) {
+RELIEF_INLINE Uint load_indices(const uint32_t (&indices)[16], LaneMask lanes) {
     alignas(64) uint32_t loaded[16];
     for (size_t lane = 0; lane < 16; ++lane) loaded[lane] = lanes >> lane & 1 ? indices[lane] : 0;
     return Uint::load(loaded);
 }
 
 /// Directions that sixteen rays came from.
-HWY_INLINE Vec3 load_viewers(const cpu::TraceRay* rays, size_t count) {
+RELIEF_INLINE Vec3 load_viewers(const cpu::TraceRay* rays, size_t count) {
     static_assert(offsetof(cpu::TraceRay, direction) == 16);
     LaneQuads quads;
     for (size_t lane = 0; lane < 16; ++lane)
@@ -79,14 +79,14 @@ HWY_INLINE Vec3 load_viewers(const cpu::TraceRay* rays, size_t count) {
 
 using LaneVectors = float[3][16];
 
-HWY_INLINE Vec3 load_vectors(const LaneVectors& v) {
+RELIEF_INLINE Vec3 load_vectors(const LaneVectors& v) {
     return {Float::load(v[0]), Float::load(v[1]), Float::load(v[2])};
 }
-HWY_INLINE void store_vectors(const Vec3& v, LaneVectors& target) {
+RELIEF_INLINE void store_vectors(const Vec3& v, LaneVectors& target) {
     v.x.store(target[0]), v.y.store(target[1]), v.z.store(target[2]);
 }
 
-HWY_INLINE Bool is_black(const Vec3& v) {
+RELIEF_INLINE Bool is_black(const Vec3& v) {
     const Float zero(0.0f);
     return v.x == zero && v.y == zero && v.z == zero;
 }
@@ -101,8 +101,8 @@ HWY_NOINLINE void turn_frame(const cpu::VertexBatch& batch, const cpu::VertexLan
     wo_local = select(has_tangent, wo, wo_local);
 }
 
-HWY_INLINE void store_light(const PointLanes& point, const Vec3& direction, const BsdfValue& toward,
-                            cpu::VertexLanes& v) {
+RELIEF_INLINE void store_light(const PointLanes& point, const Vec3& direction, const BsdfValue& toward,
+                               cpu::VertexLanes& v) {
     const Float zero(0.0f);
     const Float lift = Float::load(v.light_lift);
     const Bool is_lifted = lift > zero;
@@ -118,8 +118,8 @@ HWY_INLINE void store_light(const PointLanes& point, const Vec3& direction, cons
                   v.shadow_origin);
 }
 
-HWY_INLINE void store_path(const PointLanes& point, const Vec3& direction, const Vec3& weight,
-                           const Float& pdf, cpu::VertexLanes& v) {
+RELIEF_INLINE void store_path(const PointLanes& point, const Vec3& direction, const Vec3& weight,
+                              const Float& pdf, cpu::VertexLanes& v) {
     v.has_bounce = to_mask(dot(point.geometric_normal, direction) > Float(0.0f) && !is_black(weight));
     store_vectors(direction, v.bounce_direction), store_vectors(weight, v.bounce_weight);
     pdf.store(v.bounce_pdf);

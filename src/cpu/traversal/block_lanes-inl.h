@@ -13,7 +13,7 @@ namespace relief::HWY_NAMESPACE {
 
 /// One coordinate of the fifteen vertices of a block, row by row: `first` is its first vertex in a grid with
 /// `columns` vertices a row. Lane 15 is any number; reads up to one number past the last vertex.
-HWY_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
+RELIEF_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
     constexpr size_t kRow = 5;
     const Lanes16::D d;
     // Where the lanes of each row would begin if they were the first of all.
@@ -33,7 +33,7 @@ HWY_INLINE Lanes16 load_block(const float* first, uint32_t columns) {
 }
 
 /// The vertices of a block with lane 15 like lane 0.
-HWY_INLINE Lanes16 hide_last(const Lanes16& vertex) {
+RELIEF_INLINE Lanes16 hide_last(const Lanes16& vertex) {
     const Lanes16::D d;
     Lanes16 r = vertex;
     auto& last = r.part[Lanes16::kParts - 1];
@@ -43,7 +43,7 @@ HWY_INLINE Lanes16 hide_last(const Lanes16& vertex) {
 
 /// One corner of a block's eight quads out of two registers, the first kFromFirst from the first one.
 template <size_t kFromFirst, size_t W>
-HWY_INLINE auto pick_corner(const Lanes<W>& vertex, const int32_t (&number_in_register)[8]) {
+RELIEF_INLINE auto pick_corner(const Lanes<W>& vertex, const int32_t (&number_in_register)[8]) {
     const Lanes8::D d;
     const auto index = hn::SetTableIndices(d, number_in_register);
     return hn::IfThenElse(hn::FirstN(d, kFromFirst), hn::TableLookupLanes(vertex.part[0], index),
@@ -53,7 +53,7 @@ HWY_INLINE auto pick_corner(const Lanes<W>& vertex, const int32_t (&number_in_re
 /// The three corners of sixteen triangles of a block, one coordinate: lanes 0..7 are (00, 10, 11), 8..15 (00,
 /// 11, 01) of cells 0..3 of the first row, then of the second.
 template <size_t W>
-HWY_INLINE void gather_corners(const Lanes<W>& vertex, Lanes<W>& a, Lanes<W>& b, Lanes<W>& c) {
+RELIEF_INLINE void gather_corners(const Lanes<W>& vertex, Lanes<W>& a, Lanes<W>& b, Lanes<W>& c) {
     static_assert(W == 16);
     if constexpr (Lanes<W>::kParts == 1) {
         alignas(64) static constexpr int32_t kA[16] = {0, 1, 2, 3, 5, 6, 7, 8, 0, 1, 2, 3, 5, 6, 7, 8};

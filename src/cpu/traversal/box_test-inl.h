@@ -11,34 +11,34 @@ namespace relief::HWY_NAMESPACE {
 // decoder that the builder checked with. load_plane gives a row of them, get_plane one number, mask_children
 // the slots that rays may enter: empty boxes of floats they miss.
 
-template <size_t W> HWY_INLINE Lanes<W> load_plane(const float (&bounds)[6][W], int plane, int) {
+template <size_t W> RELIEF_INLINE Lanes<W> load_plane(const float (&bounds)[6][W], int plane, int) {
     return Lanes<W>::load(bounds[plane]);
 }
-template <size_t W> HWY_INLINE float get_plane(const float (&bounds)[6][W], int plane, int, uint32_t k) {
+template <size_t W> RELIEF_INLINE float get_plane(const float (&bounds)[6][W], int plane, int, uint32_t k) {
     return bounds[plane][k];
 }
-template <size_t W> HWY_INLINE LaneMask mask_children(const float (&)[6][W]) { return (1u << W) - 1; }
+template <size_t W> RELIEF_INLINE LaneMask mask_children(const float (&)[6][W]) { return (1u << W) - 1; }
 
-HWY_INLINE Lanes8 load_plane(const cpu::PolygonNode& node, int plane, int) {
+RELIEF_INLINE Lanes8 load_plane(const cpu::PolygonNode& node, int plane, int) {
     return Lanes8::load(node.bounds[plane]);
 }
-HWY_INLINE float get_plane(const cpu::PolygonNode& node, int plane, int, uint32_t k) {
+RELIEF_INLINE float get_plane(const cpu::PolygonNode& node, int plane, int, uint32_t k) {
     return node.bounds[plane][k];
 }
-HWY_INLINE LaneMask mask_children(const cpu::PolygonNode&) { return 0xff; }
+RELIEF_INLINE LaneMask mask_children(const cpu::PolygonNode&) { return 0xff; }
 
-HWY_INLINE Lanes8 load_plane(const WideNode& node, int plane, int axis) {
+RELIEF_INLINE Lanes8 load_plane(const WideNode& node, int plane, int axis) {
     return Lanes8::decode(node.planes[plane], node.origin[axis], WideNode::decode_scale(node.exponent[axis]));
 }
-HWY_INLINE float get_plane(const WideNode& node, int plane, int axis, uint32_t k) {
+RELIEF_INLINE float get_plane(const WideNode& node, int plane, int axis, uint32_t k) {
     return WideNode::decode(node.origin[axis], WideNode::decode_scale(node.exponent[axis]),
                             node.planes[plane][k]);
 }
-HWY_INLINE LaneMask mask_children(const WideNode& node) { return (1u << node.child_count) - 1; }
+RELIEF_INLINE LaneMask mask_children(const WideNode& node) { return (1u << node.child_count) - 1; }
 
 /// Entry distances and mask of a node's boxes met in [t_min, t_max]; near planes are known before loading.
 template <class Node, size_t W>
-HWY_INLINE LaneMask test_node(const Node& node, const RayState& ray, Lanes<W>& entry) {
+RELIEF_INLINE LaneMask test_node(const Node& node, const RayState& ray, Lanes<W>& entry) {
     Lanes<W> near[3], far[3];
     for (int k = 0; k < 3; ++k) {
         const Lanes<W> reciprocal(ray.reciprocal[k]);

@@ -48,7 +48,7 @@ struct BundleRays {
 
 /// Writes what a bundle keeps of sixteen rays, repeated where there are fewer. Returns those that may be in
 /// one with others of the lod_bias: can_hit.
-HWY_INLINE LaneMask load_group(const RayLanes& lanes, size_t at, BundleRays& rays) {
+RELIEF_INLINE LaneMask load_group(const RayLanes& lanes, size_t at, BundleRays& rays) {
     for (int k = 0; k < 3; ++k) {
         lanes.direction[k].store(rays.direction[k] + at);
         if (!rays.has_one_origin) lanes.origin[k].store(rays.from[k] + at);
@@ -59,8 +59,8 @@ HWY_INLINE LaneMask load_group(const RayLanes& lanes, size_t at, BundleRays& ray
 
 /// Takes rays at the front, at most kBundleSize, while find_fitting(lanes) has them.
 template <class FindFitting>
-HWY_INLINE void load_front(const cpu::TraceRay* world, size_t count, BundleRays& rays,
-                           FindFitting find_fitting) {
+RELIEF_INLINE void load_front(const cpu::TraceRay* world, size_t count, BundleRays& rays,
+                              FindFitting find_fitting) {
     rays.count = 0, rays.lod_bias = world[0].lod_bias, rays.origin = world[0].origin;
     const uint32_t most = uint32_t(HWY_MIN(count, size_t(kBundleSize)));
     while (rays.count < most) {
@@ -136,7 +136,7 @@ inline void pad_inactive_lanes(BundleRays& rays) {
 }
 
 /// Whether a ray begins so far away from an object that it is moved there by itself.
-HWY_INLINE bool is_any_far_away(const BundleRays& rays, const Instance& placed) {
+RELIEF_INLINE bool is_any_far_away(const BundleRays& rays, const Instance& placed) {
     return is_far_away(rays.origins.lower, placed) || is_far_away(rays.origins.upper, placed);
 }
 

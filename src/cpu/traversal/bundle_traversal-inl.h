@@ -20,7 +20,7 @@ struct QuadPlaces {
     HitPlaces places;
     int32_t first; ///< cell of the block
 
-    HWY_INLINE QuadPlaces(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block) {
+    RELIEF_INLINE QuadPlaces(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block) {
         uint32_t column = 0, row = 0;
         cpu::PatchTree::block_cell(int(tree.level), block, column, row);
         first = int32_t((tree.cell_x + column) | (tree.cell_y + row) << 16);
@@ -28,7 +28,7 @@ struct QuadPlaces {
         places.cell_size = visit.cell_size();
     }
     /// `upper` is HitPlaces::kUpper or 0. Quads 4 to 7 are those of the second row.
-    HWY_INLINE const HitPlaces& locate(const LaneIndices& quad, uint32_t upper) {
+    RELIEF_INLINE const HitPlaces& locate(const LaneIndices& quad, uint32_t upper) {
         places.cell =
             LaneIndices(int32_t(uint32_t(first) | upper)) + quad.masked(3) + quad.masked(4).shifted_up<14>();
         return places;
@@ -36,21 +36,21 @@ struct QuadPlaces {
 };
 
 template <size_t W>
-HWY_INLINE void measure_from(const Vec3f& origin, const Lanes<W> (&vertex)[3], Lanes<W> (&v)[3]) {
+RELIEF_INLINE void measure_from(const Vec3f& origin, const Lanes<W> (&vertex)[3], Lanes<W> (&v)[3]) {
     v[0] = vertex[0] - Lanes<W>(origin.x), v[1] = vertex[1] - Lanes<W>(origin.y);
     v[2] = vertex[2] - Lanes<W>(origin.z);
 }
 
 /// Of the vertices of a block; `v` is relative to the bundle's origin.
 template <class Bundle>
-HWY_INLINE ProjectedBounds find_block_bounds(const Lanes16 (&v)[3], const Bundle& bundle) {
+RELIEF_INLINE ProjectedBounds find_block_bounds(const Lanes16 (&v)[3], const Bundle& bundle) {
     Lanes16 vertex[3];
     for (int k = 0; k < 3; ++k) vertex[k] = hide_last(v[k]);
     return find_bounds(vertex, bundle);
 }
 
 /// Bounds of all.
-HWY_INLINE ProjectedBounds find_union(const PartBounds& part) {
+RELIEF_INLINE ProjectedBounds find_union(const PartBounds& part) {
     return {reduce_min(part.lower_x), reduce_max(part.upper_x), reduce_min(part.lower_y),
             reduce_max(part.upper_y), reduce_min(part.depth),   reduce_max(part.far)};
 }
@@ -70,7 +70,7 @@ template <class Bundle> struct BundleProbe {
     LaneMask tested[kGroupCount] = {}, hit[kGroupCount] = {};
 
     template <size_t W, class Visit>
-    HWY_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
+    RELIEF_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
         Lanes<W> bound[6], nearest;
         for (int k = 0; k < 6; ++k) bound[k] = Lanes<W>::load(bounds[k]);
         LaneMask mask = test_boxes(bound, bundle, nearest);
@@ -130,11 +130,11 @@ template <class Bundle> struct BundleProbe {
 };
 
 /// The boxes of a node, and the slots in use: a bundle may enter an empty box.
-template <class Node, size_t W> HWY_INLINE void load_bounds(const Node& node, Lanes<W> (&bound)[6]) {
+template <class Node, size_t W> RELIEF_INLINE void load_bounds(const Node& node, Lanes<W> (&bound)[6]) {
     for (int k = 0; k < 6; ++k) bound[k] = load_plane(node, k, k % 3);
 }
-HWY_INLINE LaneMask find_used(const WideNode& node) { return mask_children(node); }
-HWY_INLINE LaneMask find_used(const cpu::PolygonNode& node) {
+RELIEF_INLINE LaneMask find_used(const WideNode& node) { return mask_children(node); }
+RELIEF_INLINE LaneMask find_used(const cpu::PolygonNode& node) {
     LaneMask used = 0;
     for (uint32_t k = 0; k < 8; ++k) used |= LaneMask(node.child[k] != WideChild::kNoChild) << k;
     return used;
@@ -142,7 +142,7 @@ HWY_INLINE LaneMask find_used(const cpu::PolygonNode& node) {
 
 /// Of box k of eight.
 template <class Bundle>
-HWY_INLINE ProjectedBounds find_bounds(const Lanes8 (&bound)[6], uint32_t k, const Bundle& bundle) {
+RELIEF_INLINE ProjectedBounds find_bounds(const Lanes8 (&bound)[6], uint32_t k, const Bundle& bundle) {
     alignas(32) float planes[6][8], corner[3][8];
     for (int plane = 0; plane < 6; ++plane) bound[plane].store(planes[plane]);
     const float origin[3] = {bundle.origin.x, bundle.origin.y, bundle.origin.z};
@@ -168,7 +168,7 @@ template <class Nodes, class Bundle> struct BundleWalker {
     const Bundle& bundle;
     ProjectedBounds bounds{}; ///< of the leaf
 
-    HWY_INLINE bool enter(const BundleEntry& top) {
+    RELIEF_INLINE bool enter(const BundleEntry& top) {
         if (top.entry * kDepthSlack > bundle.farthest[kGroupCount]) return false;
         if (!Node::is_leaf(top.child)) return true;
         Lanes8 bound[6];
@@ -176,7 +176,7 @@ template <class Nodes, class Bundle> struct BundleWalker {
         bounds = find_bounds(bound, top.slot, bundle);
         return find_groups(bounds, bundle) != 0;
     }
-    HWY_INLINE bool open(const Node& node, BundleEntry& top, BundleEntry* stack, uint32_t& size) {
+    RELIEF_INLINE bool open(const Node& node, BundleEntry& top, BundleEntry* stack, uint32_t& size) {
         Lanes8 bound[6], nearest;
         load_bounds(node, bound);
         LaneMask mask = test_boxes(bound, bundle, nearest) & find_used(node);

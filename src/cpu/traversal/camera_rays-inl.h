@@ -15,11 +15,11 @@ namespace relief::HWY_NAMESPACE {
 struct WideCamera {
     wide::Vec3 corner, step_x, step_y;
 
-    HWY_INLINE explicit WideCamera(const scalar::CameraFrame& camera)
+    RELIEF_INLINE explicit WideCamera(const scalar::CameraFrame& camera)
         : corner(spread(camera.corner)), step_x(spread(camera.step_x)), step_y(spread(camera.step_y)) {}
 
     /// Directions of scalar::make_pinhole_ray for sixteen positions; the last one fills missing lanes.
-    HWY_INLINE wide::Vec3 aim(const Vec2f* positions, size_t count) const {
+    RELIEF_INLINE wide::Vec3 aim(const Vec2f* positions, size_t count) const {
         static_assert(sizeof(Vec2f) == 8);
         alignas(64) Vec2f padded[16];
         if (count < 16) {
@@ -32,12 +32,14 @@ struct WideCamera {
     }
 
   private:
-    static HWY_INLINE wide::Vec3 spread(const Vec3f& v) { return {Lanes16(v.x), Lanes16(v.y), Lanes16(v.z)}; }
+    static RELIEF_INLINE wide::Vec3 spread(const Vec3f& v) {
+        return {Lanes16(v.x), Lanes16(v.y), Lanes16(v.z)};
+    }
 };
 
 /// The rays of up to sixteen directions, into memory.
-HWY_INLINE void store_rays(const Vec3f& origin, const wide::Vec3& direction, size_t count,
-                           cpu::TraceRay* rays) {
+RELIEF_INLINE void store_rays(const Vec3f& origin, const wide::Vec3& direction, size_t count,
+                              cpu::TraceRay* rays) {
     static_assert(offsetof(cpu::TraceRay, direction) == 16 && offsetof(cpu::TraceRay, lod_bias) == 32);
     cpu::TraceRay start;
     start.origin = origin;

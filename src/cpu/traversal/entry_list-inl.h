@@ -17,7 +17,7 @@ template <uint32_t kCapacity> struct EntryList {
     uint32_t count = 0;
 
     /// Appends the lanes of `mask` as children first, first + 1...; `first` is a multiple of W.
-    template <size_t W> HWY_INLINE void append(LaneMask mask, const Lanes<W>& entry, uint32_t first) {
+    template <size_t W> RELIEF_INLINE void append(LaneMask mask, const Lanes<W>& entry, uint32_t first) {
         // Read from memory: compilers make a mess of a vector that counts up from a variable.
         alignas(64) static constexpr uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                               8, 9, 10, 11, 12, 13, 14, 15};
@@ -32,7 +32,7 @@ template <uint32_t kCapacity> struct EntryList {
         }
     }
 
-    HWY_INLINE void sort() {
+    RELIEF_INLINE void sort() {
         for (uint32_t k = 1; k < count; ++k) {
             const uint32_t next = key[k];
             uint32_t slot = k;

@@ -22,13 +22,13 @@ struct RayFrustum : RayBundle {
 };
 
 /// The farthest depth that a group still asks about, after hits.
-HWY_INLINE float find_farthest(const RayFrustum& frustum, uint32_t group) {
+RELIEF_INLINE float find_farthest(const RayFrustum& frustum, uint32_t group) {
     const size_t at = group * kGroupSize;
     return reduce_max(Lanes16::load(frustum.rays->t + at) * Lanes16::load(frustum.dz_dt + at));
 }
 
 /// The sides of the pyramid about all rays, a margin outside of them.
-HWY_INLINE void make_sides(RayFrustum& frustum) {
+RELIEF_INLINE void make_sides(RayFrustum& frustum) {
     const float left = frustum.lower_x[kGroupCount] - 2 * kBoundsMargin;
     const float right = frustum.upper_x[kGroupCount] + 2 * kBoundsMargin;
     const float bottom = frustum.lower_y[kGroupCount] - 2 * kBoundsMargin;
@@ -40,7 +40,7 @@ HWY_INLINE void make_sides(RayFrustum& frustum) {
 }
 
 /// Takes the rays into another space. False where they diverge too much there, or have different major axes.
-HWY_INLINE bool enter_space(const ObjectSpace& space, RayFrustum& frustum) {
+RELIEF_INLINE bool enter_space(const ObjectSpace& space, RayFrustum& frustum) {
     const BundleRays& rays = *frustum.rays;
     const Affine& from_origin = space.from_origin;
     frustum.origin = space.place(rays.origin);
@@ -66,7 +66,7 @@ HWY_INLINE bool enter_space(const ObjectSpace& space, RayFrustum& frustum) {
 
 /// The boxes that reach into the pyramid, and the least depth of each.
 template <size_t W>
-HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayFrustum& frustum, Lanes<W>& nearest) {
+RELIEF_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayFrustum& frustum, Lanes<W>& nearest) {
     const RelativeBoxes<W> box(bound, frustum.origin);
     const Lanes<W> least = Lanes<W>(0.0f) - box.reach * Lanes<W>(kBoxMargin);
     nearest = least - find_greatest(box.bound, -frustum.forward);
@@ -77,13 +77,13 @@ HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const RayFrustum& fru
 }
 
 /// Points relative to the origin.
-template <size_t W> HWY_INLINE Projected<W> project(const Lanes<W> (&v)[3], const RayFrustum& frustum) {
+template <size_t W> RELIEF_INLINE Projected<W> project(const Lanes<W> (&v)[3], const RayFrustum& frustum) {
     const Lanes<W> depth = dot_lanes(v, frustum.forward), inverse = Lanes<W>(1.0f) / depth;
     return {dot_lanes(v, frustum.right) * inverse, dot_lanes(v, frustum.up) * inverse, depth};
 }
 
 /// Widens bounds of points by rounding. What is not in front of the rays, or far aside, is unbounded.
-HWY_INLINE void widen_bounds(const RayFrustum&, ProjectedBounds& bounds) {
+RELIEF_INLINE void widen_bounds(const RayFrustum&, ProjectedBounds& bounds) {
     const bool is_in_front = bounds.depth > 0 && bounds.lower_x > -kWidestBounds &&
                              bounds.upper_x < kWidestBounds && bounds.lower_y > -kWidestBounds &&
                              bounds.upper_y < kWidestBounds;
@@ -101,7 +101,7 @@ HWY_INLINE void widen_bounds(const RayFrustum&, ProjectedBounds& bounds) {
 
 /// The same for eight parts. All are unbounded where one of them is not in front, or far aside. Parts that
 /// are not numbers are not there; a ray that is tested against one nevertheless misses it.
-HWY_INLINE void widen_bounds(const RayFrustum&, PartBounds& part) {
+RELIEF_INLINE void widen_bounds(const RayFrustum&, PartBounds& part) {
     const LaneMask is_there = less_equal(part.depth, part.depth);
     const LaneMask is_in_front = less(Lanes8(0.0f), part.depth) & less(Lanes8(-kWidestBounds), part.lower_x) &
                                  less(part.upper_x, Lanes8(kWidestBounds)) &
@@ -122,12 +122,12 @@ HWY_INLINE void widen_bounds(const RayFrustum&, PartBounds& part) {
 }
 
 template <size_t W, class Get>
-HWY_INLINE RayRanges<W> find_ranges(const RayFrustum& frustum, const ProjectedLanes<W>&, Get get) {
+RELIEF_INLINE RayRanges<W> find_ranges(const RayFrustum& frustum, const ProjectedLanes<W>&, Get get) {
     return {get(frustum.lower_x), get(frustum.upper_x), get(frustum.lower_y), get(frustum.upper_y),
             get(frustum.farthest)};
 }
 template <size_t W, class Get>
-HWY_INLINE RayRanges<W> find_places(const RayFrustum& frustum, const ProjectedLanes<W>&, Get get) {
+RELIEF_INLINE RayRanges<W> find_places(const RayFrustum& frustum, const ProjectedLanes<W>&, Get get) {
     const Lanes<W> x = get(frustum.x), y = get(frustum.y);
     return {x, x, y, y, get(frustum.rays->t) * get(frustum.dz_dt)};
 }
@@ -137,18 +137,18 @@ struct FrustumLanes {
     RayRanges<16> places;
     Lanes16 pair_value[RayFrustum::kPairValues];
 
-    HWY_INLINE LaneMask find_inside(const ProjectedBounds& bounds) const {
+    RELIEF_INLINE LaneMask find_inside(const ProjectedBounds& bounds) const {
         return places.overlap(spread<16>(bounds));
     }
 };
-HWY_INLINE FrustumLanes load_lanes(const RayFrustum& frustum, uint32_t group) {
+RELIEF_INLINE FrustumLanes load_lanes(const RayFrustum& frustum, uint32_t group) {
     const auto get = [&](const float* of_rays) { return Lanes16::load(of_rays + group * kGroupSize); };
     return {find_places(frustum, ProjectedLanes<16>{}, get), {get(frustum.shear[0]), get(frustum.shear[1])}};
 }
 
 /// Corners of sixteen triangles or quads, one of a pair's each, relative to the ray: x and y as the ray sees
 /// them, z along its major axis. `value` is pair_value of the rays; `v` is relative to the frustum's origin.
-HWY_INLINE void shear_corner(const Lanes16 (&value)[RayFrustum::kPairValues], Lanes16 (&v)[3]) {
+RELIEF_INLINE void shear_corner(const Lanes16 (&value)[RayFrustum::kPairValues], Lanes16 (&v)[3]) {
     v[0] = v[0] - value[0] * v[2];
     v[1] = v[1] - value[1] * v[2];
 }

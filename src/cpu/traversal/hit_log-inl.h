@@ -32,10 +32,11 @@ struct HitLog {
     alignas(64) float hit[kRoom][8]; ///< a TraceHit each, of make_hits; it takes no time to begin with
     uint32_t count = 0;
 
-    HWY_INLINE bool has_room() const { return count + 16 <= kCapacity; }
+    RELIEF_INLINE bool has_room() const { return count + 16 <= kCapacity; }
 
     /// The lanes of test.mask.
-    HWY_INLINE void append(const TriangleTest<16>& test, const LaneIndices& rays, const HitPlaces& places) {
+    RELIEF_INLINE void append(const TriangleTest<16>& test, const LaneIndices& rays,
+                              const HitPlaces& places) {
         DCHECK(has_room());
         constexpr size_t kLanes = Lanes16::kLanes;
         const Lanes16::D d;
@@ -64,7 +65,7 @@ static_assert(sizeof(cpu::TraceHit) == 32 && offsetof(cpu::TraceHit, t) == 0 &&
               offsetof(cpu::TraceHit, levels) == 28);
 
 /// Hits first..first + 15 of the log, by the operations of locate_in_block and locate_on_polygon.
-HWY_INLINE void make_hits(const RayBundle& bundle, HitLog& log, uint32_t first) {
+RELIEF_INLINE void make_hits(const RayBundle& bundle, HitLog& log, uint32_t first) {
     const Lanes16 v = Lanes16::load(log.v + first), w = Lanes16::load(log.w + first);
     const Lanes16 sum = Lanes16::load(log.u + first) + v + w;
     const Lanes16 weight_b = v / sum, weight_c = w / sum, both = weight_b + weight_c;
@@ -118,7 +119,7 @@ HWY_NOINLINE inline bool wins_tie(const RayBundle& bundle, uint32_t k, uint32_t 
 }
 
 /// Offers hits [first, log.count) to their rays; sets hit_rays and returns the groups that took one.
-HWY_INLINE LaneMask offer_logged(RayBundle& bundle, uint32_t first, LaneMask (&hit_rays)[kGroupCount]) {
+RELIEF_INLINE LaneMask offer_logged(RayBundle& bundle, uint32_t first, LaneMask (&hit_rays)[kGroupCount]) {
     BundleRays& rays = *bundle.rays;
     HitLog& log = *rays.log;
     LaneMask dirty = 0;
@@ -137,10 +138,10 @@ HWY_INLINE LaneMask offer_logged(RayBundle& bundle, uint32_t first, LaneMask (&h
 /// The hits of one block, offered to their rays all at once: that makes branches predictable.
 template <class Bundle> class BlockHits {
   public:
-    HWY_INLINE BlockHits(Bundle& bundle, LaneMask (&hit_rays)[kGroupCount])
+    RELIEF_INLINE BlockHits(Bundle& bundle, LaneMask (&hit_rays)[kGroupCount])
         : bundle_(bundle), hit_rays_(hit_rays), first_(bundle.rays->log->count) {}
 
-    HWY_INLINE void note(const TriangleTest<16>& test, const LaneIndices& rays, const HitPlaces& places) {
+    RELIEF_INLINE void note(const TriangleTest<16>& test, const LaneIndices& rays, const HitPlaces& places) {
         HitLog& log = *bundle_.rays->log;
         if (!log.has_room()) {
             offer();
@@ -149,7 +150,7 @@ template <class Bundle> class BlockHits {
         }
         log.append(test, rays, places);
     }
-    HWY_INLINE void offer() {
+    RELIEF_INLINE void offer() {
         if (first_ < bundle_.rays->log->count)
             update_groups(bundle_, offer_logged(bundle_, first_, hit_rays_));
     }

@@ -9,10 +9,10 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE::wide {
 
 /// The lanes of `count` members, at most sixteen.
-HWY_INLINE LaneMask first_lanes(size_t count) { return count >= 16 ? 0xffffu : (1u << count) - 1; }
+RELIEF_INLINE LaneMask first_lanes(size_t count) { return count >= 16 ? 0xffffu : (1u << count) - 1; }
 
 /// Lanes beyond `count` are 0.
-HWY_INLINE Vec2 load_pairs(const Vec2f* source, size_t count) {
+RELIEF_INLINE Vec2 load_pairs(const Vec2f* source, size_t count) {
     alignas(64) float pairs[32] = {};
     std::memcpy(pairs, source, HWY_MIN(count, size_t(16)) * sizeof(Vec2f));
     Vec2 result;
@@ -21,7 +21,7 @@ HWY_INLINE Vec2 load_pairs(const Vec2f* source, size_t count) {
 }
 
 /// The same of vectors.
-HWY_INLINE Vec3 load_vectors(const Vec3f* source, size_t count) {
+RELIEF_INLINE Vec3 load_vectors(const Vec3f* source, size_t count) {
     alignas(64) float packed[48] = {};
     std::memcpy(packed, source, HWY_MIN(count, size_t(16)) * sizeof(Vec3f));
     Vec3 result;
@@ -31,7 +31,7 @@ HWY_INLINE Vec3 load_vectors(const Vec3f* source, size_t count) {
     return result;
 }
 
-HWY_INLINE void store_vectors(const Vec3& vectors, size_t count, Vec3f* target) {
+RELIEF_INLINE void store_vectors(const Vec3& vectors, size_t count, Vec3f* target) {
     alignas(64) float packed[48];
     for (size_t p = 0; p < Float::kParts; ++p)
         hn::StoreInterleaved3(vectors.x.part[p], vectors.y.part[p], vectors.z.part[p], Float::D(),

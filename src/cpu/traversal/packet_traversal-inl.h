@@ -13,7 +13,7 @@ namespace relief::HWY_NAMESPACE {
 inline constexpr int kLeastPacket = 3;
 
 /// Children that some ray of the packet may enter.
-template <class Node> HWY_INLINE LaneMask test_children(const Node& node, const PacketBounds& bounds) {
+template <class Node> RELIEF_INLINE LaneMask test_children(const Node& node, const PacketBounds& bounds) {
     using Plane = decltype(load_plane(node, 0, 0));
     Plane entry(bounds.t_min), exit(bounds.t_max);
     for (int k = 0; k < 3; ++k) {
@@ -28,8 +28,8 @@ template <class Node> HWY_INLINE LaneMask test_children(const Node& node, const 
 
 /// Lanes of `mask` that enter child k, and a lower bound of their nearest entry (of all lanes).
 template <class Node>
-HWY_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packet, LaneMask mask,
-                               float& nearest) {
+RELIEF_INLINE LaneMask test_child(const Node& node, uint32_t k, const Packet& packet, LaneMask mask,
+                                  float& nearest) {
     Lanes16 near[3], far[3];
     for (int axis = 0; axis < 3; ++axis) {
         const Lanes16 lower(get_plane(node, axis, axis, k)), upper(get_plane(node, 3 + axis, axis, k));
@@ -52,7 +52,7 @@ struct PacketEntry {
 
 /// Calls take(child, lanes, nearest entry) for the boxes of a node that lanes of `mask` enter.
 template <class Node, class Take>
-HWY_INLINE void find_entered(const Node& node, const Packet& packet, LaneMask mask, Take take) {
+RELIEF_INLINE void find_entered(const Node& node, const Packet& packet, LaneMask mask, Take take) {
     for (LaneMask children = test_children(node, packet.bounds); children; children &= children - 1) {
         const uint32_t k = uint32_t(__builtin_ctz(children));
         float nearest = 0;
@@ -73,7 +73,7 @@ template <Query kQuery> struct PacketProbe {
     }
 
     template <size_t W, class Visit>
-    HWY_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
+    RELIEF_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
         PacketEntry order[W];
         uint32_t size = 0;
         find_entered(bounds, packet, rays, [&](uint32_t k, LaneMask entered, float nearest) {
@@ -84,7 +84,7 @@ template <Query kQuery> struct PacketProbe {
         return false;
     }
 
-    HWY_INLINE bool test_block(const cpu::PatchTree& tree, int level, uint32_t block, LaneMask rays) {
+    RELIEF_INLINE bool test_block(const cpu::PatchTree& tree, int level, uint32_t block, LaneMask rays) {
         if (!(rays &= packet.active)) return false;
         // Put together once for all rays; box leaves do not look at them.
         const BlockPlace place(tree, level, block);
@@ -111,7 +111,7 @@ template <class TraverseSingle> struct PacketWalker {
     Packet& packet;
     TraverseSingle traverse_single;
 
-    HWY_INLINE bool enter(PacketEntry& top) {
+    RELIEF_INLINE bool enter(PacketEntry& top) {
         top.mask &=
             packet.active & less_equal(Lanes16(top.entry), Lanes16::load(packet.t_max) * Lanes16(kBoxSlack));
         if (__builtin_popcount(top.mask) >= kLeastPacket) return true;
@@ -120,7 +120,7 @@ template <class TraverseSingle> struct PacketWalker {
         return false;
     }
     template <class Node>
-    HWY_INLINE bool open(const Node& node, PacketEntry& top, PacketEntry* stack, uint32_t& size) {
+    RELIEF_INLINE bool open(const Node& node, PacketEntry& top, PacketEntry* stack, uint32_t& size) {
         uint32_t count = 0;
         find_entered(node, packet, top.mask, [&](uint32_t k, LaneMask entered, float nearest) {
             insert_sorted<kFarthestFirst>({node.child[k], entered, nearest}, stack + size, count);
@@ -132,7 +132,7 @@ template <class TraverseSingle> struct PacketWalker {
 template <class TraverseSingle> PacketWalker(Packet&, TraverseSingle) -> PacketWalker<TraverseSingle>;
 
 /// A lane that was traced by itself, or against a block of polygons.
-template <Query kQuery> HWY_INLINE void take_hit(Packet& packet, uint32_t lane, bool has_hit) {
+template <Query kQuery> RELIEF_INLINE void take_hit(Packet& packet, uint32_t lane, bool has_hit) {
     packet.t_max[lane] = packet.ray[lane].t_max;
     if (kQuery == Query::any && has_hit) packet.active &= ~(1u << lane);
     if (kQuery == Query::closest && has_hit) packet.update_reach();
@@ -140,8 +140,8 @@ template <Query kQuery> HWY_INLINE void take_hit(Packet& packet, uint32_t lane, 
 
 /// Everything of one instance for the lanes of `mask`.
 template <Query kQuery>
-HWY_INLINE void trace_surface(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t surface,
-                              Packet& packet, LaneMask mask) {
+RELIEF_INLINE void trace_surface(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t surface,
+                                 Packet& packet, LaneMask mask) {
     PacketWalker walker{packet, [&](uint32_t child, uint32_t lane) {
                             take_hit<kQuery>(packet, lane,
                                              trace_instance<kQuery>(scene, context, packet.world[lane], child,
@@ -176,8 +176,8 @@ HWY_INLINE void trace_surface(const cpu::SceneView& scene, cpu::TraceContext& co
 /// The lanes of `mask` that begin far away from an instance go there by themselves, each moved; returns the
 /// others.
 template <Query kQuery>
-HWY_INLINE LaneMask visit_from_far(const cpu::SceneView& scene, cpu::TraceContext& context, uint32_t instance,
-                                   Packet& world, LaneMask mask) {
+RELIEF_INLINE LaneMask visit_from_far(const cpu::SceneView& scene, cpu::TraceContext& context,
+                                      uint32_t instance, Packet& world, LaneMask mask) {
     LaneMask far = world.lanes->find_far_away(scene.instances[instance]) & mask;
     const LaneMask near = mask & ~far;
     for (; far; far &= far - 1) {

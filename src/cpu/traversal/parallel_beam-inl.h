@@ -28,16 +28,16 @@ struct ParallelBeam : RayBundle {
 };
 
 /// The depths to which sixteen rays still ask, after hits.
-HWY_INLINE Lanes16 find_ends(const ParallelBeam& beam, uint32_t group) {
+RELIEF_INLINE Lanes16 find_ends(const ParallelBeam& beam, uint32_t group) {
     const size_t at = group * kGroupSize;
     return Lanes16::load(beam.start + at) + Lanes16::load(beam.rays->t + at) * Lanes16::load(beam.dz_dt + at);
 }
-HWY_INLINE float find_farthest(const ParallelBeam& beam, uint32_t group) {
+RELIEF_INLINE float find_farthest(const ParallelBeam& beam, uint32_t group) {
     return reduce_max(find_ends(beam, group));
 }
 
 /// Origins into the space, by the operations of ObjectSpace::place, and where depth 0 is.
-HWY_INLINE void place_origins(const ObjectSpace& space, ParallelBeam& beam) {
+RELIEF_INLINE void place_origins(const ObjectSpace& space, ParallelBeam& beam) {
     const BundleRays& rays = *beam.rays;
     const Vec3f &t = space.from_origin.translation, &o = space.origin;
     const float translation[3] = {t.x, t.y, t.z}, origin[3] = {o.x, o.y, o.z};
@@ -61,7 +61,7 @@ HWY_INLINE void place_origins(const ObjectSpace& space, ParallelBeam& beam) {
 }
 
 /// Sizes of two coordinates into the extent. False for NaN, and where places on the plane would be NaN.
-HWY_INLINE bool extend(const Lanes16& a, const Lanes16& b, Lanes16& extent) {
+RELIEF_INLINE bool extend(const Lanes16& a, const Lanes16& b, Lanes16& extent) {
     const Lanes16 size_a = magnitude(a), size_b = magnitude(b);
     extent = max(extent, max(size_a, size_b));
     return less(size_a + size_b, Lanes16(1e18f)) == 0xffff;
@@ -74,11 +74,11 @@ struct PivotSums {
     PivotSums() : slope2(0.0f) {
         for (int k = 0; k < 2; ++k) place_slope[k] = place[k] = slope[k] = slope2;
     }
-    HWY_INLINE void add(const Lanes16& x, int k, const Lanes16& slope_x) {
+    RELIEF_INLINE void add(const Lanes16& x, int k, const Lanes16& slope_x) {
         place_slope[k] = place_slope[k] + x * slope_x, place[k] = place[k] + x;
         slope[k] = slope[k] + slope_x, slope2 = slope2 + slope_x * slope_x;
     }
-    HWY_INLINE float find_depth() const {
+    RELIEF_INLINE float find_depth() const {
         constexpr float kShare = 1.0f / kBundleSize;
         float covariance = 0, variance = reduce_sum(slope2);
         for (int k = 0; k < 2; ++k) {
@@ -92,8 +92,8 @@ struct PivotSums {
 };
 
 /// Sixteen rays as lines, x and y at depth 0. False for several major axes or rays that go backward.
-HWY_INLINE bool enter_group(const Affine& from_origin, uint32_t group, ParallelBeam& beam, Lanes16& extent,
-                            PivotSums& sums) {
+RELIEF_INLINE bool enter_group(const Affine& from_origin, uint32_t group, ParallelBeam& beam, Lanes16& extent,
+                               PivotSums& sums) {
     const size_t at = group * kGroupSize;
     const float origin[3] = {beam.origin.x, beam.origin.y, beam.origin.z};
     Lanes16 d[3], o[3], rcp_dz_dt;
@@ -113,7 +113,7 @@ HWY_INLINE bool enter_group(const Affine& from_origin, uint32_t group, ParallelB
 }
 
 /// Ranges of a group, places at the pivot from now on. False as of enter_group.
-HWY_INLINE bool place_group(uint32_t group, ParallelBeam& beam, Lanes16& extent) {
+RELIEF_INLINE bool place_group(uint32_t group, ParallelBeam& beam, Lanes16& extent) {
     const size_t at = group * kGroupSize;
     const Lanes16 slope_x = Lanes16::load(beam.slope_x + at), slope_y = Lanes16::load(beam.slope_y + at);
     const Lanes16 x = Lanes16::load(beam.x + at) + slope_x * Lanes16(beam.pivot);
@@ -126,7 +126,7 @@ HWY_INLINE bool place_group(uint32_t group, ParallelBeam& beam, Lanes16& extent)
 }
 
 /// Takes the rays into another space. False where they diverge too much there, or have different major axes.
-HWY_INLINE bool enter_space(const ObjectSpace& space, ParallelBeam& beam) {
+RELIEF_INLINE bool enter_space(const ObjectSpace& space, ParallelBeam& beam) {
     const BundleRays& rays = *beam.rays;
     const Affine& from_origin = space.from_origin;
     const uint32_t near = HWY_MIN(3u, rays.count - 1);
@@ -153,7 +153,7 @@ HWY_INLINE bool enter_space(const ObjectSpace& space, ParallelBeam& beam) {
 }
 
 /// Widens bounds by rounding, and by how far rays move from the middle of one to an end.
-template <class T> HWY_INLINE void widen(const ParallelBeam& beam, const T& margin, BoundsOf<T>& bounds) {
+template <class T> RELIEF_INLINE void widen(const ParallelBeam& beam, const T& margin, BoundsOf<T>& bounds) {
     const T half = T(0.5f) * (bounds.far - bounds.depth);
     const T x = margin + T(beam.steepest_x) * half, y = margin + T(beam.steepest_y) * half;
     bounds.lower_x = bounds.lower_x - x, bounds.upper_x = bounds.upper_x + x;
@@ -163,7 +163,7 @@ template <class T> HWY_INLINE void widen(const ParallelBeam& beam, const T& marg
 
 /// ProjectedLanes of W boxes.
 template <size_t W>
-HWY_INLINE ProjectedLanes<W> find_box_bounds(const Lanes<W> (&bound)[6], const ParallelBeam& beam) {
+RELIEF_INLINE ProjectedLanes<W> find_box_bounds(const Lanes<W> (&bound)[6], const ParallelBeam& beam) {
     const RelativeBoxes<W> box(bound, beam.origin);
     const Lanes<W> zero(0.0f);
     const auto least = [&](const Vec3f& n) { return zero - find_greatest(box.bound, -n); };
@@ -176,7 +176,7 @@ HWY_INLINE ProjectedLanes<W> find_box_bounds(const Lanes<W> (&bound)[6], const P
 
 /// Lines of slopes between two bounds and places between two, at the middle depth.
 template <size_t W, class Get>
-HWY_INLINE RayRanges<W> find_ranges(const ParallelBeam& beam, const ProjectedLanes<W>& bounds, Get get) {
+RELIEF_INLINE RayRanges<W> find_ranges(const ParallelBeam& beam, const ProjectedLanes<W>& bounds, Get get) {
     const Lanes<W> middle = bounds.middle() - Lanes<W>(beam.pivot);
     const Lanes<W> x0 = get(beam.lower_slope_x) * middle, x1 = get(beam.upper_slope_x) * middle;
     const Lanes<W> y0 = get(beam.lower_slope_y) * middle, y1 = get(beam.upper_slope_y) * middle;
@@ -184,19 +184,19 @@ HWY_INLINE RayRanges<W> find_ranges(const ParallelBeam& beam, const ProjectedLan
             get(beam.upper_y) + max(y0, y1), get(beam.farthest)};
 }
 template <size_t W, class Get>
-HWY_INLINE RayRanges<W> find_places(const ParallelBeam& beam, const ProjectedLanes<W>& bounds, Get get) {
+RELIEF_INLINE RayRanges<W> find_places(const ParallelBeam& beam, const ProjectedLanes<W>& bounds, Get get) {
     const Lanes<W> middle = bounds.middle() - Lanes<W>(beam.pivot);
     const Lanes<W> x = get(beam.x) + get(beam.slope_x) * middle, y = get(beam.y) + get(beam.slope_y) * middle;
     return {x, x, y, y, get(beam.start) + get(beam.rays->t) * get(beam.dz_dt)};
 }
 
 /// Points relative to the origin.
-template <size_t W> HWY_INLINE Projected<W> project(const Lanes<W> (&v)[3], const ParallelBeam& beam) {
+template <size_t W> RELIEF_INLINE Projected<W> project(const Lanes<W> (&v)[3], const ParallelBeam& beam) {
     return {dot_lanes(v, beam.right), dot_lanes(v, beam.up), dot_lanes(v, beam.forward)};
 }
 
 /// The same of points, or of eight parts. Those that are NaN no ray lies in.
-template <class T> HWY_INLINE void widen_bounds(const ParallelBeam& beam, BoundsOf<T>& bounds) {
+template <class T> RELIEF_INLINE void widen_bounds(const ParallelBeam& beam, BoundsOf<T>& bounds) {
     const T zero(0.0f);
     const T aside =
         max(max(zero - bounds.lower_x, bounds.upper_x), max(zero - bounds.lower_y, bounds.upper_y));
@@ -206,7 +206,7 @@ template <class T> HWY_INLINE void widen_bounds(const ParallelBeam& beam, Bounds
 
 /// The boxes that a group of rays may enter, and the least depth of each.
 template <size_t W>
-HWY_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const ParallelBeam& beam, Lanes<W>& nearest) {
+RELIEF_INLINE LaneMask test_boxes(const Lanes<W> (&bound)[6], const ParallelBeam& beam, Lanes<W>& nearest) {
     const ProjectedLanes<W> bounds = find_box_bounds(bound, beam);
     nearest = bounds.depth;
     LaneMask mask = find_parts_of_group(bounds, beam, kGroupCount) & less_equal(Lanes<W>(0.0f), bounds.far);
@@ -228,13 +228,13 @@ struct BeamLanes {
     Lanes16 x, y, slope_x, slope_y, end;
     Lanes16 pair_value[ParallelBeam::kPairValues];
 
-    HWY_INLINE LaneMask find_inside(const ProjectedBounds& bounds) const {
+    RELIEF_INLINE LaneMask find_inside(const ProjectedBounds& bounds) const {
         const Lanes16 middle(bounds.middle() - pivot);
         const Lanes16 at_x = x + slope_x * middle, at_y = y + slope_y * middle;
         return RayRanges<16>{at_x, at_x, at_y, at_y, end}.overlap(spread<16>(bounds));
     }
 };
-HWY_INLINE BeamLanes load_lanes(const ParallelBeam& beam, uint32_t group) {
+RELIEF_INLINE BeamLanes load_lanes(const ParallelBeam& beam, uint32_t group) {
     const auto get = [&](const float* of_rays) { return Lanes16::load(of_rays + group * kGroupSize); };
     const auto get_from = [&](int k) { return get(beam.from[beam.axis[k]]); };
     return {beam.pivot,
@@ -247,7 +247,7 @@ HWY_INLINE BeamLanes load_lanes(const ParallelBeam& beam, uint32_t group) {
 }
 
 /// As of a RayFrustum; `v` is as it lies in the space, the major axis last.
-HWY_INLINE void shear_corner(const Lanes16 (&value)[ParallelBeam::kPairValues], Lanes16 (&v)[3]) {
+RELIEF_INLINE void shear_corner(const Lanes16 (&value)[ParallelBeam::kPairValues], Lanes16 (&v)[3]) {
     v[2] = v[2] - value[4];
     v[0] = (v[0] - value[2]) - value[0] * v[2];
     v[1] = (v[1] - value[3]) - value[1] * v[2];

@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 /// Paper 1's rule (Harada 2015): one level for the whole patch from the width of the ray's cone there.
-HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, const cpu::TraceRay& world) {
+RELIEF_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, const cpu::TraceRay& world) {
     const Surface& surface = visit.scene->surfaces[visit.surface];
     const Quad quad = surface.quads[visit.patch];
     float longest = 0;
@@ -29,8 +29,8 @@ HWY_INLINE void choose_ray_level(PatchVisit& visit, const Instance& placed, cons
 }
 
 /// The triangle of the patch in lane `lane` of a block, and the place on the patch by its weights.
-HWY_INLINE void locate_in_block(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
-                                uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
+RELIEF_INLINE void locate_in_block(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
+                                   uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
     uint32_t column = 0, row = 0;
     cpu::PatchTree::block_cell(int(tree.level), block, column, row);
     const float cell_size = visit.cell_size();
@@ -49,19 +49,19 @@ struct BlockPlace {
     uint32_t column_count, axis_step; ///< from row to row and from axis to axis
 
     /// `level` is that of the tree: where the caller knows it, most of this is known, too.
-    HWY_INLINE BlockPlace(const cpu::PatchTree& tree, int level, uint32_t block)
+    RELIEF_INLINE BlockPlace(const cpu::PatchTree& tree, int level, uint32_t block)
         : first(tree.grid(level) + cpu::PatchTree::find_first_vertex(level, block)),
           column_count(cpu::PatchTree::column_count(level)),
           axis_step(cpu::PatchTree::vertex_count(level)) {}
-    HWY_INLINE Lanes16 load(int axis) const {
+    RELIEF_INLINE Lanes16 load(int axis) const {
         return load_block(first + uint32_t(axis) * axis_step, column_count);
     }
 };
 
 /// Exact leaf: sixteen triangles at once. load(axis) gives a coordinate of the vertices of the block.
 template <Query kQuery, class Load>
-HWY_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
-                                    Load load, RayState& ray) {
+RELIEF_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
+                                       Load load, RayState& ray) {
     Lanes16 x, y, z, cx[3], cy[3], cz[3];
     shear_vertices(load, ray, x, y, z);
     gather_corners(x, cx[0], cx[1], cx[2]);
@@ -115,8 +115,8 @@ HWY_NOINLINE bool intersect_boxes(const PatchVisit& visit, const cpu::PatchTree&
 }
 
 template <Query kQuery, class Load>
-HWY_INLINE bool intersect_block(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
-                                Load load, RayState& ray) {
+RELIEF_INLINE bool intersect_block(const PatchVisit& visit, const cpu::PatchTree& tree, uint32_t block,
+                                   Load load, RayState& ray) {
     ++visit.context->counters.blocks;
     return visit.scene->leaf == LeafKind::exact ? intersect_triangles<kQuery>(visit, tree, block, load, ray)
                                                 : intersect_boxes<kQuery>(visit, tree, block, ray);
@@ -132,7 +132,7 @@ template <Query kQuery> struct RayProbe {
 
     void count_pairs(LaneMask) const { visit.count_pairs(1, has_hit); }
 
-    HWY_INLINE bool test_block(const cpu::PatchTree& tree, int level, uint32_t block, LaneMask) {
+    RELIEF_INLINE bool test_block(const cpu::PatchTree& tree, int level, uint32_t block, LaneMask) {
         const BlockPlace at(tree, level, block);
         const auto load = [&](int axis) { return at.load(axis); };
         const bool is_hit = intersect_block<kQuery>(visit, tree, block, load, ray);
@@ -141,7 +141,7 @@ template <Query kQuery> struct RayProbe {
     }
 
     template <size_t W, class Visit>
-    HWY_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
+    RELIEF_INLINE bool visit_children(const float (&bounds)[6][W], LaneMask rays, Visit visit_child) {
         Lanes<W> entry;
         const LaneMask mask = test_node(bounds, ray, entry);
         if ((mask & (mask - 1)) == 0) return mask != 0 && visit_child(uint32_t(__builtin_ctz(mask)), rays);
@@ -155,19 +155,19 @@ template <Query kQuery> struct RayProbe {
     }
 
     template <class Visit>
-    HWY_INLINE void visit_any_order(const float (&bounds)[6][16], Visit visit_child) const {
+    RELIEF_INLINE void visit_any_order(const float (&bounds)[6][16], Visit visit_child) const {
         Lanes16 entry;
         for (LaneMask mask = test_node(bounds, ray, entry); mask; mask &= mask - 1)
             visit_child(uint32_t(__builtin_ctz(mask)));
     }
     template <size_t W, class List>
-    HWY_INLINE void list_children(const float (&bounds)[6][W], uint32_t first, List& leaves) const {
+    RELIEF_INLINE void list_children(const float (&bounds)[6][W], uint32_t first, List& leaves) const {
         Lanes<W> entry;
         const LaneMask mask = test_node(bounds, ray, entry);
         leaves.append(mask, entry, first);
     }
     /// Nearest first; for Query::any as they come, since all of them are at hand already.
-    template <class List, class Visit> HWY_INLINE bool visit_listed(List& leaves, Visit visit_leaf) const {
+    template <class List, class Visit> RELIEF_INLINE bool visit_listed(List& leaves, Visit visit_leaf) const {
         if constexpr (kQuery == Query::closest) leaves.sort();
         for (uint32_t k = 0; k < leaves.count; ++k) {
             if (kQuery == Query::closest && leaves.distance(k) > ray.t_max * kBoxSlack) continue;
@@ -179,8 +179,8 @@ template <Query kQuery> struct RayProbe {
 
 /// A displaced patch of the instance that the ray is in the space of.
 template <Query kQuery>
-HWY_INLINE bool trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context,
-                            const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
+RELIEF_INLINE bool trace_patch(const cpu::SceneView& scene, cpu::TraceContext& context,
+                               const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
     RayProbe<kQuery> probe{{scene, context, ray.instance, patch, world.lod_bias}, ray};
     if (scene.lod == LodRule::ray) choose_ray_level(probe.visit, scene.instances[ray.instance], world);
     visit_patch(probe, 1);

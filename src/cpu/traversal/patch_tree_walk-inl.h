@@ -20,26 +20,26 @@ struct PatchVisit {
     uint32_t surface, patch;
     uint32_t levels; ///< pack_levels
 
-    HWY_INLINE PatchVisit(const cpu::SceneView& of, cpu::TraceContext& with, uint32_t instance,
-                          uint32_t of_patch, uint32_t lod_bias)
+    RELIEF_INLINE PatchVisit(const cpu::SceneView& of, cpu::TraceContext& with, uint32_t instance,
+                             uint32_t of_patch, uint32_t lod_bias)
         : scene(&of), context(&with), surface(of.instances[instance].surface), patch(of_patch) {
         levels = of.instances[instance].levels->packed_at(patch);
         if (lod_bias != 0) levels = scalar::lower_packed_levels(levels, lod_bias);
     }
-    HWY_INLINE uint32_t level() const { return scalar::packed_patch_level(levels); }
+    RELIEF_INLINE uint32_t level() const { return scalar::packed_patch_level(levels); }
     /// In (u, v).
-    HWY_INLINE float cell_size() const { return 1.0f / float(1u << level()); }
+    RELIEF_INLINE float cell_size() const { return 1.0f / float(1u << level()); }
 
-    HWY_INLINE const cpu::PatchTree& find_tree(uint32_t tile) const {
+    RELIEF_INLINE const cpu::PatchTree& find_tree(uint32_t tile) const {
         return scene->cache->find_or_build_tree(*context, scene->surfaces[surface],
                                                 {surface, patch, tile, levels});
     }
-    HWY_INLINE const cpu::TileDirectory& find_directory() const {
+    RELIEF_INLINE const cpu::TileDirectory& find_directory() const {
         return scene->cache->find_or_build_directory(*context, scene->surfaces[surface],
                                                      {surface, patch, cpu::kDirectoryTile, levels});
     }
-    HWY_INLINE void count_node() const { ++context->counters.patch_nodes; }
-    HWY_INLINE void count_pairs(uint32_t entered, uint32_t hit) const {
+    RELIEF_INLINE void count_node() const { ++context->counters.patch_nodes; }
+    RELIEF_INLINE void count_pairs(uint32_t entered, uint32_t hit) const {
         context->counters.pairs_emitted += entered, context->counters.pairs_with_hit += hit;
     }
 };
@@ -63,7 +63,7 @@ concept PatchProbe = requires(Probe& probe, const cpu::PatchTree& tree, uint32_t
 
 /// The boxes of a tree, a step or two.
 template <int kLevel, PatchProbe Probe>
-HWY_INLINE bool visit_nodes(const cpu::PatchTree& tree, Probe& probe, LaneMask rays) {
+RELIEF_INLINE bool visit_nodes(const cpu::PatchTree& tree, Probe& probe, LaneMask rays) {
     using Shape = cpu::TreeShape<kLevel>;
     const auto visit_leaf = [&](uint32_t leaf, LaneMask entered) __attribute__((always_inline)) {
         for (uint32_t block = leaf * Shape::kLeafBlocks; block < (leaf + 1) * Shape::kLeafBlocks; ++block)
@@ -131,12 +131,12 @@ bool visit_directory(const cpu::TileDirectory& directory, uint32_t step, uint32_
 /// The time of a patch where the batch is timed: all but that of building.
 class PatchClock {
   public:
-    HWY_INLINE explicit PatchClock(cpu::TraceContext& context) : counters_(context.counters) {
+    RELIEF_INLINE explicit PatchClock(cpu::TraceContext& context) : counters_(context.counters) {
         if (!context.is_timed) return;
         timer_.emplace();
         built_before_ = counters_.bottom_build_s;
     }
-    HWY_INLINE ~PatchClock() {
+    RELIEF_INLINE ~PatchClock() {
         if (timer_)
             counters_.sampled_bottom_s += timer_->seconds() - (counters_.bottom_build_s - built_before_);
     }
@@ -150,7 +150,7 @@ class PatchClock {
 };
 
 /// Everything of a patch.
-template <PatchProbe Probe> HWY_INLINE void visit_patch(Probe& probe, LaneMask rays) {
+template <PatchProbe Probe> RELIEF_INLINE void visit_patch(Probe& probe, LaneMask rays) {
     const PatchClock clock(*probe.visit.context);
     if (probe.visit.level() <= cpu::kTileLevel)
         visit_patch_tree(probe.visit.find_tree(0), probe, rays);

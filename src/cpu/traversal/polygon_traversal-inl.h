@@ -14,7 +14,7 @@ struct StackEntry {
 };
 
 /// Puts the nearer one second, without a branch to guess wrong.
-HWY_INLINE void order_entries(StackEntry& a, StackEntry& b) {
+RELIEF_INLINE void order_entries(StackEntry& a, StackEntry& b) {
     const bool is_in_order = a.entry >= b.entry;
     const StackEntry farther = is_in_order ? a : b, nearer = is_in_order ? b : a;
     a = farther, b = nearer;
@@ -22,14 +22,15 @@ HWY_INLINE void order_entries(StackEntry& a, StackEntry& b) {
 
 /// The place of a hit on its polygon from the weights of corners b and c. 0 is added as where the cell of a
 /// patch is: make_hits does the same for both, and a weight may be -0.
-HWY_INLINE void locate_on_polygon(bool is_upper, float weight_b, float weight_c, cpu::TraceHit& hit) {
+RELIEF_INLINE void locate_on_polygon(bool is_upper, float weight_b, float weight_c, cpu::TraceHit& hit) {
     hit.is_upper = is_upper;
     hit.u = 0.0f + (is_upper ? weight_b : weight_b + weight_c);
     hit.v = 0.0f + (is_upper ? weight_b + weight_c : weight_c);
 }
 
 /// Eight triangles at once. Returns whether any was met; Query::closest takes over the nearest.
-template <Query kQuery> HWY_INLINE bool intersect_triangles(const cpu::TriangleBlock& block, RayState& ray) {
+template <Query kQuery>
+RELIEF_INLINE bool intersect_triangles(const cpu::TriangleBlock& block, RayState& ray) {
     Lanes8 x[3], y[3], z[3];
     for (int corner = 0; corner < 3; ++corner)
         shear_vertices([&](int axis) { return Lanes8::load(block.corner[corner][axis]); }, ray, x[corner],
@@ -47,8 +48,8 @@ template <Query kQuery> HWY_INLINE bool intersect_triangles(const cpu::TriangleB
 
 /// Puts the children of `mask`, at least three, on the stack, the nearest last.
 template <class Node>
-HWY_INLINE void push_children(const Node& node, LaneMask mask, const float* distance, StackEntry* stack,
-                              uint32_t& size) {
+RELIEF_INLINE void push_children(const Node& node, LaneMask mask, const float* distance, StackEntry* stack,
+                                 uint32_t& size) {
     const auto take = [&] {
         const uint32_t k = uint32_t(__builtin_ctz(mask));
         mask &= mask - 1;
@@ -65,8 +66,8 @@ HWY_INLINE void push_children(const Node& node, LaneMask mask, const float* dist
 
 /// The nearest child of `mask`, at least one; the others go on the stack.
 template <class Node>
-HWY_INLINE uint32_t take_nearest(const Node& node, LaneMask mask, const Lanes8& entry, StackEntry* stack,
-                                 uint32_t& size) {
+RELIEF_INLINE uint32_t take_nearest(const Node& node, LaneMask mask, const Lanes8& entry, StackEntry* stack,
+                                    uint32_t& size) {
     const uint32_t first = uint32_t(__builtin_ctz(mask));
     const LaneMask others = mask & (mask - 1);
     if (others == 0) return node.child[first];
@@ -93,19 +94,19 @@ struct PolygonRayWalker {
     Lanes8 near_origin[3], far_origin[3], near_factor[3], far_factor[3], t_min;
     float reach = 0;
 
-    HWY_INLINE explicit PolygonRayWalker(const RayState& of) : ray(of), t_min(of.t_min) {
+    RELIEF_INLINE explicit PolygonRayWalker(const RayState& of) : ray(of), t_min(of.t_min) {
         for (int k = 0; k < 3; ++k) {
             near_origin[k] = Lanes8(ray.near_origin[k]), far_origin[k] = Lanes8(ray.far_origin[k]);
             near_factor[k] = Lanes8(ray.reciprocal[k]);
             far_factor[k] = Lanes8(ray.reciprocal[k] * kBoxSlack);
         }
     }
-    HWY_INLINE bool enter(const StackEntry& top) {
+    RELIEF_INLINE bool enter(const StackEntry& top) {
         reach = ray.t_max * kBoxSlack;
         return top.entry <= reach;
     }
-    HWY_INLINE bool open(const cpu::PolygonNode& node, StackEntry& top, StackEntry* stack,
-                         uint32_t& size) const {
+    RELIEF_INLINE bool open(const cpu::PolygonNode& node, StackEntry& top, StackEntry* stack,
+                            uint32_t& size) const {
         Lanes8 near[3], far[3];
         for (int k = 0; k < 3; ++k) {
             near[k] = (Lanes8::load(node.bounds[ray.near_plane[k]]) - near_origin[k]) * near_factor[k];

@@ -29,12 +29,12 @@ struct RayState {
     float own_t_min, own_t_max; ///< of a ray that was moved, in its own t
 
     /// Of hits, in the ray's own t.
-    HWY_INLINE float hit_t_min() const { return shift == 0 ? t_min : own_t_min; }
-    HWY_INLINE float hit_t_max() const { return shift == 0 ? t_max : own_t_max; }
+    RELIEF_INLINE float hit_t_min() const { return shift == 0 ? t_min : own_t_min; }
+    RELIEF_INLINE float hit_t_max() const { return shift == 0 ? t_max : own_t_max; }
 
     /// Nothing beyond `t` is sought any more. Own t of a moved ray are rounded: boxes are met somewhat
     /// further on.
-    HWY_INLINE void shorten(float t) {
+    RELIEF_INLINE void shorten(float t) {
         if (shift == 0) {
             t_max = t;
             return;
@@ -55,8 +55,8 @@ struct RayState {
 
 /// Prepares a ray for a space; t keeps its meaning because the direction is not normalised. `start` is less
 /// the origin of the space.
-HWY_INLINE void enter_space(const scalar::LocalStart& start, const Vec3f& world_direction,
-                            const Affine& space_from_origin, RayState& ray) {
+RELIEF_INLINE void enter_space(const scalar::LocalStart& start, const Vec3f& world_direction,
+                               const Affine& space_from_origin, RayState& ray) {
     const Vec3f o = transform_point(space_from_origin, start.origin);
     const Vec3f d = transform_vector(space_from_origin, world_direction);
     ray.shift = start.shift;
@@ -87,11 +87,11 @@ HWY_INLINE void enter_space(const scalar::LocalStart& start, const Vec3f& world_
     ray.shear[1] = direction[ray.axis[1]] * ray.shear[2];
 }
 
-HWY_INLINE void enter_world(const cpu::TraceRay& world, RayState& ray) {
+RELIEF_INLINE void enter_world(const cpu::TraceRay& world, RayState& ray) {
     enter_space({world.origin, 0}, world.direction, Affine{}, ray);
 }
 
-HWY_INLINE bool is_far_away(const Vec3f& origin, const Instance& placed) {
+RELIEF_INLINE bool is_far_away(const Vec3f& origin, const Instance& placed) {
     return scalar::is_far_away(origin, placed.world_from_object.translation, placed.reach);
 }
 
@@ -102,7 +102,7 @@ HWY_NOINLINE inline scalar::LocalStart find_far_start(const cpu::TraceRay& world
 }
 
 /// `ray` has its range and its hit.
-HWY_INLINE void enter_object(const cpu::TraceRay& world, const Instance& placed, RayState& ray) {
+RELIEF_INLINE void enter_object(const cpu::TraceRay& world, const Instance& placed, RayState& ray) {
     const scalar::LocalStart start = is_far_away(world.origin, placed)
                                          ? find_far_start(world, placed)
                                          : scalar::LocalStart{world.origin - placed.object_space.origin, 0};

@@ -16,7 +16,7 @@ inline constexpr float kBoundsMargin = 4e-6f;
 inline constexpr float kBoxMargin = 2e-6f;
 inline constexpr float kDepthSlack = 1 - 2e-5f;
 
-HWY_INLINE float max(float a, float b) { return HWY_MAX(a, b); }
+RELIEF_INLINE float max(float a, float b) { return HWY_MAX(a, b); }
 
 /// A part of the plane, and the depths between which it is seen: of one, or of as many as T has lanes.
 template <class T> struct BoundsOf {
@@ -26,7 +26,7 @@ template <class T> struct BoundsOf {
 using ProjectedBounds = BoundsOf<float>;
 template <size_t W> using ProjectedLanes = BoundsOf<Lanes<W>>;
 
-template <size_t W> HWY_INLINE ProjectedLanes<W> spread(const ProjectedBounds& bounds) {
+template <size_t W> RELIEF_INLINE ProjectedLanes<W> spread(const ProjectedBounds& bounds) {
     return {Lanes<W>(bounds.lower_x), Lanes<W>(bounds.upper_x), Lanes<W>(bounds.lower_y),
             Lanes<W>(bounds.upper_y), Lanes<W>(bounds.depth),   Lanes<W>(bounds.far)};
 }
@@ -35,7 +35,7 @@ template <size_t W> HWY_INLINE ProjectedLanes<W> spread(const ProjectedBounds& b
 template <size_t W> struct RayRanges {
     Lanes<W> lower_x, upper_x, lower_y, upper_y, farthest;
 
-    HWY_INLINE LaneMask overlap(const ProjectedLanes<W>& bounds) const {
+    RELIEF_INLINE LaneMask overlap(const ProjectedLanes<W>& bounds) const {
         return less_equal(bounds.lower_x, upper_x) & less_equal(lower_x, bounds.upper_x) &
                less_equal(bounds.lower_y, upper_y) & less_equal(lower_y, bounds.upper_y) &
                less_equal(bounds.depth, farthest);
@@ -64,20 +64,20 @@ struct RayBundle {
 };
 
 /// From the ranges of groups to those of all rays.
-HWY_INLINE void join_lower(float (&of_groups)[kRangeCount]) {
+RELIEF_INLINE void join_lower(float (&of_groups)[kRangeCount]) {
     of_groups[kGroupCount] = reduce_min(Lanes16::load(of_groups));
 }
-HWY_INLINE void join_upper(float (&of_groups)[kRangeCount]) {
+RELIEF_INLINE void join_upper(float (&of_groups)[kRangeCount]) {
     of_groups[kGroupCount] = reduce_max(Lanes16::load(of_groups));
 }
-HWY_INLINE void join_ranges(RayBundle& bundle) {
+RELIEF_INLINE void join_ranges(RayBundle& bundle) {
     join_lower(bundle.lower_x), join_upper(bundle.upper_x);
     join_lower(bundle.lower_y), join_upper(bundle.upper_y);
     join_upper(bundle.farthest);
 }
 
 /// Depths of groups after hits.
-template <class Bundle> HWY_INLINE void update_groups(Bundle& bundle, LaneMask dirty) {
+template <class Bundle> RELIEF_INLINE void update_groups(Bundle& bundle, LaneMask dirty) {
     if (!dirty) return;
     for (; dirty; dirty &= dirty - 1) {
         const uint32_t group = uint32_t(__builtin_ctz(dirty));
@@ -87,15 +87,15 @@ template <class Bundle> HWY_INLINE void update_groups(Bundle& bundle, LaneMask d
 }
 
 /// Directions of sixteen rays in an object's space, by the operations of transform_vector.
-HWY_INLINE void transform_directions(const BundleRays& rays, const Affine& from_origin, size_t at,
-                                     Lanes16 (&d)[3]) {
+RELIEF_INLINE void transform_directions(const BundleRays& rays, const Affine& from_origin, size_t at,
+                                        Lanes16 (&d)[3]) {
     Lanes16 world[3];
     for (int k = 0; k < 3; ++k) world[k] = Lanes16::load(rays.direction[k] + at);
     for (size_t k = 0; k < 3; ++k) d[k] = dot_lanes(world, from_origin.rows[k]);
 }
 
 /// Axes of a plane that faces `forward`, one of them about along `along`.
-HWY_INLINE void choose_axes(const Vec3f& forward, const Vec3f& along, RayBundle& bundle) {
+RELIEF_INLINE void choose_axes(const Vec3f& forward, const Vec3f& along, RayBundle& bundle) {
     bundle.forward = forward;
     Vec3f right = along - forward * dot(along, forward);
     if (!(dot(right, right) > 1e-6f * dot(along, along)))
@@ -105,13 +105,15 @@ HWY_INLINE void choose_axes(const Vec3f& forward, const Vec3f& along, RayBundle&
     bundle.up = cross(forward, bundle.right);
 }
 
-HWY_INLINE Lanes16 magnitude(const Lanes16& a) { return max(a, Lanes16(0.0f) - a); }
+RELIEF_INLINE Lanes16 magnitude(const Lanes16& a) { return max(a, Lanes16(0.0f) - a); }
 
 /// Which lanes have |a| > |b|.
-HWY_INLINE LaneMask is_longer(const Lanes16& a, const Lanes16& b) { return less(magnitude(b), magnitude(a)); }
+RELIEF_INLINE LaneMask is_longer(const Lanes16& a, const Lanes16& b) {
+    return less(magnitude(b), magnitude(a));
+}
 
 /// The major axis of sixteen directions by the choice of enter_object; 3 if they differ.
-HWY_INLINE int find_major_axis(const Lanes16 (&d)[3]) {
+RELIEF_INLINE int find_major_axis(const Lanes16 (&d)[3]) {
     const LaneMask x_over_y = is_longer(d[0], d[1]), x_over_z = is_longer(d[0], d[2]),
                    y_over_z = is_longer(d[1], d[2]);
     if ((x_over_y & x_over_z) == 0xffff) return 0;
@@ -120,7 +122,7 @@ HWY_INLINE int find_major_axis(const Lanes16 (&d)[3]) {
 }
 
 /// About the middle of the rays.
-HWY_INLINE Vec3f find_forward(const Affine& from_origin, const BundleRays& rays) {
+RELIEF_INLINE Vec3f find_forward(const Affine& from_origin, const BundleRays& rays) {
     const auto direction = [&](uint32_t k) {
         return normalize(transform_vector(from_origin, rays.direction_of(k)));
     };
@@ -129,7 +131,7 @@ HWY_INLINE Vec3f find_forward(const Affine& from_origin, const BundleRays& rays)
 }
 
 /// Takes the major axis of the first sixteen rays for all; false where these have several.
-HWY_INLINE bool choose_major_axis(const Affine& from_origin, RayBundle& bundle) {
+RELIEF_INLINE bool choose_major_axis(const Affine& from_origin, RayBundle& bundle) {
     static constexpr int kMinorAxes[4][2] = {{1, 2}, {2, 0}, {0, 1}, {0, 0}};
     Lanes16 d[3];
     transform_directions(*bundle.rays, from_origin, 0, d);
@@ -140,7 +142,7 @@ HWY_INLINE bool choose_major_axis(const Affine& from_origin, RayBundle& bundle) 
 }
 
 /// Test data and dz_dt of sixteen rays. False for rays backwards or along another axis than bundle.axis[2].
-HWY_INLINE bool store_directions(const Lanes16 (&d)[3], size_t at, RayBundle& bundle, Lanes16& rcp_dz_dt) {
+RELIEF_INLINE bool store_directions(const Lanes16 (&d)[3], size_t at, RayBundle& bundle, Lanes16& rcp_dz_dt) {
     if (find_major_axis(d) != bundle.axis[2]) return false;
     const Lanes16 dz_dt = dot_lanes(d, bundle.forward);
     const Lanes16 squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
@@ -158,7 +160,7 @@ HWY_INLINE bool store_directions(const Lanes16 (&d)[3], size_t at, RayBundle& bu
 }
 
 /// The range of a group on the plane.
-HWY_INLINE void store_range(const Lanes16& x, const Lanes16& y, uint32_t group, RayBundle& bundle) {
+RELIEF_INLINE void store_range(const Lanes16& x, const Lanes16& y, uint32_t group, RayBundle& bundle) {
     const size_t at = group * kGroupSize;
     x.store(bundle.x + at), y.store(bundle.y + at);
     bundle.lower_x[group] = reduce_min(x), bundle.upper_x[group] = reduce_max(x);
@@ -167,7 +169,8 @@ HWY_INLINE void store_range(const Lanes16& x, const Lanes16& y, uint32_t group, 
 
 /// The groups of rays that may be inside. find_ranges(bundle, bounds, get) gives where groups are at the
 /// depth of bounds, find_places where rays are; get(array) takes those that are meant out of an array.
-template <class Bundle> HWY_INLINE LaneMask find_groups(const ProjectedBounds& bounds, const Bundle& bundle) {
+template <class Bundle>
+RELIEF_INLINE LaneMask find_groups(const ProjectedBounds& bounds, const Bundle& bundle) {
     const ProjectedLanes<16> of_all = spread<16>(bounds);
     const auto get = [](const float* of_groups) { return Lanes16::load(of_groups); };
     return find_ranges(bundle, of_all, get).overlap(of_all);
@@ -175,20 +178,21 @@ template <class Bundle> HWY_INLINE LaneMask find_groups(const ProjectedBounds& b
 
 /// The parts that any ray of a group may meet; of all groups: kGroupCount.
 template <size_t W, class Bundle>
-HWY_INLINE LaneMask find_parts_of_group(const ProjectedLanes<W>& part, const Bundle& bundle, uint32_t group) {
+RELIEF_INLINE LaneMask find_parts_of_group(const ProjectedLanes<W>& part, const Bundle& bundle,
+                                           uint32_t group) {
     const auto get = [&](const float* of_groups) { return Lanes<W>(of_groups[group]); };
     return find_ranges(bundle, part, get).overlap(part);
 }
 
 /// The parts that one ray may meet.
 template <class Bundle>
-HWY_INLINE LaneMask find_parts_of_ray(const PartBounds& part, const Bundle& bundle, uint32_t ray) {
+RELIEF_INLINE LaneMask find_parts_of_ray(const PartBounds& part, const Bundle& bundle, uint32_t ray) {
     const auto get = [&](const float* of_rays) { return Lanes8(of_rays[ray]); };
     return find_places(bundle, part, get).overlap(part);
 }
 
 /// The greatest value of dot(p, n) over W boxes (lower x y z, upper x y z).
-template <size_t W> HWY_INLINE Lanes<W> find_greatest(const Lanes<W> (&bound)[6], const Vec3f& n) {
+template <size_t W> RELIEF_INLINE Lanes<W> find_greatest(const Lanes<W> (&bound)[6], const Vec3f& n) {
     const float factor[3] = {n.x, n.y, n.z};
     Lanes<W> sum(0.0f);
     for (int k = 0; k < 3; ++k) sum = sum + bound[factor[k] < 0 ? k : 3 + k] * Lanes<W>(factor[k]);
@@ -199,7 +203,7 @@ template <size_t W> HWY_INLINE Lanes<W> find_greatest(const Lanes<W> (&bound)[6]
 template <size_t W> struct RelativeBoxes {
     Lanes<W> bound[6], reach; ///< from the bundle's origin; the greatest distance along an axis
 
-    HWY_INLINE RelativeBoxes(const Lanes<W> (&bounds)[6], const Vec3f& from) : reach(0.0f) {
+    RELIEF_INLINE RelativeBoxes(const Lanes<W> (&bounds)[6], const Vec3f& from) : reach(0.0f) {
         const float origin[3] = {from.x, from.y, from.z};
         for (int k = 0; k < 6; ++k) {
             bound[k] = bounds[k] - Lanes<W>(origin[k % 3]);

@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
-template <size_t W> HWY_INLINE Lanes<W> dot_lanes(const Lanes<W> (&v)[3], const Vec3f& n) {
+template <size_t W> RELIEF_INLINE Lanes<W> dot_lanes(const Lanes<W> (&v)[3], const Vec3f& n) {
     return v[0] * Lanes<W>(n.x) + v[1] * Lanes<W>(n.y) + v[2] * Lanes<W>(n.z);
 }
 
@@ -21,7 +21,7 @@ struct RayLanes {
     Lanes16 origin[3], direction[3], t_min, t_max;
     LaneMask of_lod_bias; ///< rays that are there, not repeated, and have the LOD bias asked for
 
-    HWY_INLINE RayLanes(const cpu::TraceRay* rays, uint32_t count, uint32_t lod_bias) : of_lod_bias(0) {
+    RELIEF_INLINE RayLanes(const cpu::TraceRay* rays, uint32_t count, uint32_t lod_bias) : of_lod_bias(0) {
         static_assert(offsetof(cpu::TraceRay, t_min) == 12 && offsetof(cpu::TraceRay, direction) == 16 &&
                       offsetof(cpu::TraceRay, t_max) == 28);
         LaneQuads starts, ends;
@@ -36,7 +36,7 @@ struct RayLanes {
     }
 
     /// is_far_away of each.
-    HWY_INLINE LaneMask find_far_away(const Instance& placed) const {
+    RELIEF_INLINE LaneMask find_far_away(const Instance& placed) const {
         const Vec3f& center = placed.world_from_object.translation;
         const Lanes16 limit(scalar::kFarAway * placed.reach);
         const auto measure = [&](const Lanes16& from, float to) {
@@ -48,7 +48,7 @@ struct RayLanes {
     }
 
     /// relief::can_hit of each, repeated ones included.
-    HWY_INLINE LaneMask can_hit() const {
+    RELIEF_INLINE LaneMask can_hit() const {
         const Lanes16 all =
             (origin[0] + direction[0]) + (origin[1] + direction[1]) + (origin[2] + direction[2]);
         return equal(all - all, Lanes16(0.0f)) & less_equal(t_min, t_max);

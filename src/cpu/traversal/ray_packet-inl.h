@@ -51,15 +51,15 @@ struct Packet {
         update_reach();
     }
     /// After t_max has become less.
-    HWY_INLINE void update_reach() { bounds.t_max = reduce_max(Lanes16::load(t_max)); }
+    RELIEF_INLINE void update_reach() { bounds.t_max = reduce_max(Lanes16::load(t_max)); }
 };
 
 /// Whole numbers, to be stored where a RayState has integers.
-HWY_INLINE Lanes16 integer_lanes(uint32_t number) { return Lanes16(std::bit_cast<float>(number)); }
+RELIEF_INLINE Lanes16 integer_lanes(uint32_t number) { return Lanes16(std::bit_cast<float>(number)); }
 
 /// Writes four numbers of each ray's state, the first of which is number `first` of it.
-HWY_INLINE void store_quads(const Lanes16& a, const Lanes16& b, const Lanes16& c, const Lanes16& d,
-                            size_t first, RayState (&rays)[16]) {
+RELIEF_INLINE void store_quads(const Lanes16& a, const Lanes16& b, const Lanes16& c, const Lanes16& d,
+                               size_t first, RayState (&rays)[16]) {
     LaneQuads quads;
     quads.set(a, b, c, d);
     for (size_t lane = 0; lane < 16; ++lane)
@@ -81,7 +81,7 @@ struct AxisLanes {
     }
 };
 
-HWY_INLINE AxisLanes make_axis_lanes(const Lanes16& origin, const Lanes16& direction) {
+RELIEF_INLINE AxisLanes make_axis_lanes(const Lanes16& origin, const Lanes16& direction) {
     using wide::operator<;
     AxisLanes axis;
     axis.origin = origin, axis.direction = direction;
@@ -99,13 +99,13 @@ HWY_INLINE AxisLanes make_axis_lanes(const Lanes16& origin, const Lanes16& direc
 struct MajorAxis {
     wide::Bool is_x_over_y, is_not_z;
 
-    HWY_INLINE explicit MajorAxis(const AxisLanes (&axis)[3]) {
+    RELIEF_INLINE explicit MajorAxis(const AxisLanes (&axis)[3]) {
         using wide::operator>;
         const Lanes16 x = wide::abs(axis[0].direction), y = wide::abs(axis[1].direction);
         is_x_over_y = x > y;
         is_not_z = wide::select(is_x_over_y, x, y) > wide::abs(axis[2].direction);
     }
-    HWY_INLINE Lanes16 pick(const Lanes16& if_x, const Lanes16& if_y, const Lanes16& if_z) const {
+    RELIEF_INLINE Lanes16 pick(const Lanes16& if_x, const Lanes16& if_y, const Lanes16& if_z) const {
         return wide::select(is_not_z, wide::select(is_x_over_y, if_x, if_y), if_z);
     }
 };
@@ -121,8 +121,8 @@ static_assert(offsetof(RayState, reciprocal) == 4 * 3 && offsetof(RayState, near
 /// Sixteen rays into the space of an object: enter_object of each that is not far away, operation for
 /// operation. `t_max` is how far they still ask; `instance` is kNoIndex for the world itself; hits stay as
 /// they are.
-HWY_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const ObjectSpace& space,
-                             uint32_t instance, Packet& packet) {
+RELIEF_INLINE void enter_object(const RayLanes& world, const Lanes16& t_max, const ObjectSpace& space,
+                                uint32_t instance, Packet& packet) {
     const Affine& from_origin = space.from_origin;
     const float translation[3] = {from_origin.translation.x, from_origin.translation.y,
                                   from_origin.translation.z};

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
 /// Least and greatest value over the corners of each quad.
-HWY_INLINE void find_quad_range(const Lanes16& vertex, Lanes8& least, Lanes8& greatest) {
+RELIEF_INLINE void find_quad_range(const Lanes16& vertex, Lanes8& least, Lanes8& greatest) {
     Lanes16 a, b, c;
     gather_corners(vertex, a, b, c);
     alignas(64) float low[16], high[16];
@@ -24,7 +24,8 @@ HWY_INLINE void find_quad_range(const Lanes16& vertex, Lanes8& least, Lanes8& gr
 }
 
 /// ProjectedLanes of the quads of a block; `v` is relative to the bundle's origin.
-template <class Bundle> HWY_INLINE PartBounds find_quad_bounds(const Lanes16 (&v)[3], const Bundle& bundle) {
+template <class Bundle>
+RELIEF_INLINE PartBounds find_quad_bounds(const Lanes16 (&v)[3], const Bundle& bundle) {
     const Projected<16> seen = project(v, bundle);
     PartBounds quad;
     find_quad_range(seen.x, quad.lower_x, quad.upper_x);
@@ -36,7 +37,7 @@ template <class Bundle> HWY_INLINE PartBounds find_quad_bounds(const Lanes16 (&v
 
 /// ProjectedLanes of eight triangles; `v` (corner, axis) is relative to the bundle's origin.
 template <class Bundle>
-HWY_INLINE PartBounds find_triangle_bounds(const Lanes8 (&v)[3][3], const Bundle& bundle) {
+RELIEF_INLINE PartBounds find_triangle_bounds(const Lanes8 (&v)[3][3], const Bundle& bundle) {
     const Projected<8> a = project(v[0], bundle), b = project(v[1], bundle), c = project(v[2], bundle);
     PartBounds part = {min(min(a.x, b.x), c.x),
                        max(max(a.x, b.x), c.x),
@@ -50,7 +51,7 @@ HWY_INLINE PartBounds find_triangle_bounds(const Lanes8 (&v)[3][3], const Bundle
 
 /// Of points; `v` is relative to the bundle's origin.
 template <size_t W, class Bundle>
-HWY_INLINE ProjectedBounds find_bounds(const Lanes<W> (&v)[3], const Bundle& bundle) {
+RELIEF_INLINE ProjectedBounds find_bounds(const Lanes<W> (&v)[3], const Bundle& bundle) {
     const Projected<W> seen = project(v, bundle);
     ProjectedBounds bounds = {reduce_min(seen.x), reduce_max(seen.x),     reduce_min(seen.y),
                               reduce_max(seen.y), reduce_min(seen.depth), reduce_max(seen.depth)};
@@ -73,8 +74,8 @@ template <int kValues> struct PairList {
     }
 
     /// The rays of `mask` of a group with one part.
-    HWY_INLINE void append_rays(LaneMask mask, uint32_t first_ray, uint32_t part,
-                                const Lanes16 (&values)[kValues]) {
+    RELIEF_INLINE void append_rays(LaneMask mask, uint32_t first_ray, uint32_t part,
+                                   const Lanes16 (&values)[kValues]) {
         alignas(64) static constexpr uint32_t kRays[16] = {0,  8,  16, 24, 32, 40,  48,  56,
                                                            64, 72, 80, 88, 96, 104, 112, 120};
         constexpr size_t kLanes = Lanes16::kLanes;
@@ -92,7 +93,8 @@ template <int kValues> struct PairList {
     }
 
     /// One ray with the parts of `mask`.
-    template <class Bundle> HWY_INLINE void append_parts(LaneMask mask, uint32_t ray, const Bundle& bundle) {
+    template <class Bundle>
+    RELIEF_INLINE void append_parts(LaneMask mask, uint32_t ray, const Bundle& bundle) {
         alignas(32) static constexpr uint32_t kParts[8] = {0, 1, 2, 3, 4, 5, 6, 7};
         for (int k = 0; k < kValues; ++k) Lanes8(bundle.pair_value(k, ray)).store_unaligned(value[k] + count);
         constexpr size_t kLanes = Lanes8::kLanes;
@@ -111,8 +113,8 @@ template <class Bundle> using PairsOf = PairList<Bundle::kPairValues>;
 /// Appends the pairs of the rays `left` of a group: ray by ray where they are fewer than the parts that
 /// concern them, else quad by part. Returns the rays that have one.
 template <class Bundle, class GroupLanes>
-HWY_INLINE LaneMask append_pairs(const PartBounds& part, const Bundle& bundle, uint32_t group,
-                                 const GroupLanes& rays, LaneMask left, PairsOf<Bundle>& pairs) {
+RELIEF_INLINE LaneMask append_pairs(const PartBounds& part, const Bundle& bundle, uint32_t group,
+                                    const GroupLanes& rays, LaneMask left, PairsOf<Bundle>& pairs) {
     LaneMask parts = find_parts_of_group(part, bundle, group), paired = 0;
     const uint32_t at = group * kGroupSize;
     if (__builtin_popcount(left) <= __builtin_popcount(parts)) {
@@ -139,8 +141,8 @@ HWY_INLINE LaneMask append_pairs(const PartBounds& part, const Bundle& bundle, u
 
 /// Calls trace_pairs(list) for the pairs of rays with eight parts; marks the rays that were tested.
 template <class Bundle, class TracePairs>
-HWY_INLINE void visit_pairs(const PartBounds& part, const ProjectedBounds& all, const Bundle& bundle,
-                            LaneMask (&tested)[kGroupCount], uint64_t& count, TracePairs trace_pairs) {
+RELIEF_INLINE void visit_pairs(const PartBounds& part, const ProjectedBounds& all, const Bundle& bundle,
+                               LaneMask (&tested)[kGroupCount], uint64_t& count, TracePairs trace_pairs) {
     PairsOf<Bundle> pairs;
     for (LaneMask groups = find_groups(all, bundle); groups; groups &= groups - 1) {
         const uint32_t group = uint32_t(__builtin_ctz(groups));
@@ -162,7 +164,7 @@ template <int kValues> struct PairLanes {
     LaneMask valid;
 
     /// Takes up to sixteen pairs from the end of the list.
-    HWY_INLINE explicit PairLanes(PairList<kValues>& list) {
+    RELIEF_INLINE explicit PairLanes(PairList<kValues>& list) {
         const uint32_t count = HWY_MIN(list.count, 16u);
         list.count -= count;
         valid = (1u << count) - 1;
@@ -175,8 +177,8 @@ template <int kValues> struct PairLanes {
 /// Corners of sixteen triangles or quads, relative to the rays: x and y as the ray of the lane sees them, z
 /// along its major axis. `pick(corner, axis)` gives them relative to bundle.vertex_origin().
 template <int kCount, class Bundle, class Pick>
-HWY_INLINE void shear_corners(const PairLanes<Bundle::kPairValues>& pairs, const Bundle& bundle, Pick pick,
-                              Lanes16 (&corner)[3][kCount]) {
+RELIEF_INLINE void shear_corners(const PairLanes<Bundle::kPairValues>& pairs, const Bundle& bundle, Pick pick,
+                                 Lanes16 (&corner)[3][kCount]) {
     for (int c = 0; c < kCount; ++c) {
         Lanes16 v[3];
         for (int k = 0; k < 3; ++k) v[k] = pick(c, bundle.axis[k]);
@@ -188,8 +190,8 @@ HWY_INLINE void shear_corners(const PairLanes<Bundle::kPairValues>& pairs, const
 /// The triangles of corners 0, kSecond and kThird, however far along the rays: test.t is the place along the
 /// major axis. False where no ray's line meets one.
 template <int kSecond, int kThird, int kValues, int kCount>
-HWY_INLINE bool test_pairs(const PairLanes<kValues>& pairs, const Lanes16 (&corner)[3][kCount],
-                           TriangleTest<16>& test) {
+RELIEF_INLINE bool test_pairs(const PairLanes<kValues>& pairs, const Lanes16 (&corner)[3][kCount],
+                              TriangleTest<16>& test) {
     const auto pick = [&](int k, Lanes16(&of)[3]) __attribute__((always_inline)) {
         of[0] = corner[k][0], of[1] = corner[k][kSecond], of[2] = corner[k][kThird];
     };

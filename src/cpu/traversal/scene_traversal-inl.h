@@ -13,8 +13,8 @@ struct RayWalker {
 
     const RayState& ray;
 
-    HWY_INLINE bool enter(const StackEntry& top) const { return top.entry <= ray.t_max * kBoxSlack; }
-    HWY_INLINE bool open(const WideNode& node, StackEntry& top, StackEntry* stack, uint32_t& size) const {
+    RELIEF_INLINE bool enter(const StackEntry& top) const { return top.entry <= ray.t_max * kBoxSlack; }
+    RELIEF_INLINE bool open(const WideNode& node, StackEntry& top, StackEntry* stack, uint32_t& size) const {
         Lanes8 entry;
         const LaneMask mask = test_node(node, ray, entry);
         if (mask != 0) top.child = take_nearest(node, mask, entry, stack, size);
@@ -52,8 +52,8 @@ template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patc
 
 /// One primitive of an instance: a polygon or a displaced patch.
 template <Query kQuery>
-HWY_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
-                                const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
+RELIEF_INLINE bool trace_primitive(const cpu::SceneView& scene, cpu::TraceContext& context,
+                                   const cpu::TraceRay& world, uint32_t patch, RayState& ray) {
     const Surface& surface = scene.surfaces[scene.instances[ray.instance].surface];
     return surface.has_displacement ? trace_patch<kQuery>(scene, context, world, patch, ray)
                                     : trace_polygon<kQuery>(surface, patch, ray);
@@ -78,8 +78,8 @@ bool trace_instance(const cpu::SceneView& scene, cpu::TraceContext& context, con
 
 /// Everything of one instance. `best` is in world space and carries t_max and the hit.
 template <Query kQuery>
-HWY_INLINE bool visit_instance(const cpu::SceneView& scene, cpu::TraceContext& context,
-                               const cpu::TraceRay& world, uint32_t instance, RayState& best) {
+RELIEF_INLINE bool visit_instance(const cpu::SceneView& scene, cpu::TraceContext& context,
+                                  const cpu::TraceRay& world, uint32_t instance, RayState& best) {
     if (!scene.is_visible(instance)) return false;
     const Instance& placed = scene.instances[instance];
     if (placed.is_in_place && !is_far_away(world.origin, placed)) {
@@ -107,8 +107,8 @@ bool trace_scene(const cpu::SceneView& scene, cpu::TraceContext& context, const 
 
 /// The whole scene along one ray; `ray` begins empty. An only instance needs no tree over instances.
 template <Query kQuery>
-HWY_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& context, const cpu::TraceRay& world,
-                          RayState& ray) {
+RELIEF_INLINE bool trace_ray(const cpu::SceneView& scene, cpu::TraceContext& context,
+                             const cpu::TraceRay& world, RayState& ray) {
     ray.t_min = world.t_min, ray.t_max = world.t_max;
     if (scene.instance_count != 1) {
         enter_world(world, ray);

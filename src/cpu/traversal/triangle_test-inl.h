@@ -17,7 +17,7 @@ template <size_t W> struct TriangleTest {
 };
 
 template <size_t W>
-HWY_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], TriangleTest<W>& test) {
+RELIEF_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], TriangleTest<W>& test) {
     test.u = x[2] * y[1] - y[2] * x[1];
     test.v = x[0] * y[2] - y[0] * x[2];
     test.w = x[1] * y[0] - y[1] * x[0];
@@ -25,14 +25,14 @@ HWY_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], T
 }
 
 /// Places along the major axis, of which triangles without area have none.
-template <size_t W> HWY_INLINE LaneMask find_places(const Lanes<W> (&z)[3], TriangleTest<W>& test) {
+template <size_t W> RELIEF_INLINE LaneMask find_places(const Lanes<W> (&z)[3], TriangleTest<W>& test) {
     const Lanes<W> sum = test.u + test.v + test.w;
     test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum;
     return test.mask &= not_equal(sum, Lanes<W>(0.0f));
 }
 
 template <size_t W>
-HWY_INLINE LaneMask test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
+RELIEF_INLINE LaneMask test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
     find_places(z, test);
     test.t = test.t * Lanes<W>(ray.shear[2]);
     float t_min = ray.t_min, t_max = ray.t_max;
@@ -45,14 +45,14 @@ HWY_INLINE LaneMask test_distances(const Lanes<W> (&z)[3], const RayState& ray, 
 
 /// Vertices relative to the ray: sheared x and y, and z along the major axis. load(axis) gives coordinates.
 template <size_t W, class Load>
-HWY_INLINE void shear_vertices(Load load, const RayState& ray, Lanes<W>& x, Lanes<W>& y, Lanes<W>& z) {
+RELIEF_INLINE void shear_vertices(Load load, const RayState& ray, Lanes<W>& x, Lanes<W>& y, Lanes<W>& z) {
     z = load(ray.axis[2]) - Lanes<W>(ray.origin[ray.axis[2]]);
     x = (load(ray.axis[0]) - Lanes<W>(ray.origin[ray.axis[0]])) - Lanes<W>(ray.shear[0]) * z;
     y = (load(ray.axis[1]) - Lanes<W>(ray.origin[ray.axis[1]])) - Lanes<W>(ray.shear[1]) * z;
 }
 
 /// Order of equally near hits: (instance, patch, j, i, upper), so that results are deterministic.
-HWY_INLINE bool comes_before(const cpu::TraceHit& a, const cpu::TraceHit& b) {
+RELIEF_INLINE bool comes_before(const cpu::TraceHit& a, const cpu::TraceHit& b) {
     const auto rank = [](const cpu::TraceHit& h) {
         return uint64_t(h.j) << 17 | uint64_t(h.i) << 1 | h.is_upper;
     };
@@ -62,21 +62,21 @@ HWY_INLINE bool comes_before(const cpu::TraceHit& a, const cpu::TraceHit& b) {
 }
 
 /// Takes over a hit if it is nearer, or as near and first in that order.
-HWY_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
+RELIEF_INLINE void offer_hit(RayState& ray, const cpu::TraceHit& hit) {
     if (!(hit.t == ray.hit.t ? comes_before(hit, ray.hit) : hit.t < ray.hit.t)) return;
     ray.hit = hit;
     ray.shorten(hit.t);
 }
 
 /// What the ray found in a space of its own.
-HWY_INLINE void take_over(RayState& ray, const RayState& found) {
+RELIEF_INLINE void take_over(RayState& ray, const RayState& found) {
     ray.hit = found.hit;
     ray.shorten(found.hit_t_max());
 }
 
 /// Offers the hits of a test; locate(lane, weight_b, weight_c, hit) sets cell, is_upper, u and v.
 template <size_t W, class Locate>
-HWY_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
+RELIEF_INLINE void offer_hits(RayState& ray, const TriangleTest<W>& test, Locate locate) {
     alignas(64) float u[W], v[W], w[W], t[W];
     test.u.store(u), test.v.store(v), test.w.store(w), test.t.store(t);
     for (LaneMask mask = test.mask; mask; mask &= mask - 1) {

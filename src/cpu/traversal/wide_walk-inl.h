@@ -29,7 +29,7 @@ enum EntryOrder { kNearestFirst, kFarthestFirst };
 
 /// Inserts into entries[0, count), sorted by entry distance, behind equal ones.
 template <EntryOrder kOrder, class Entry>
-HWY_INLINE void insert_sorted(const Entry& entry, Entry* entries, uint32_t& count) {
+RELIEF_INLINE void insert_sorted(const Entry& entry, Entry* entries, uint32_t& count) {
     const auto comes_before = [&](const Entry& other) {
         return kOrder == kNearestFirst ? entry.entry < other.entry : entry.entry > other.entry;
     };
@@ -40,8 +40,8 @@ HWY_INLINE void insert_sorted(const Entry& entry, Entry* entries, uint32_t& coun
 
 /// Calls visit_leaf(entry) for leaves below `first` that the walker enters, nearest first, until it is true.
 template <class Nodes, class Walker, class VisitLeaf>
-HWY_INLINE bool walk_wide_tree(const Nodes& nodes, Walker& walker, const typename Walker::Entry& first,
-                               uint32_t& visited, VisitLeaf visit_leaf) {
+RELIEF_INLINE bool walk_wide_tree(const Nodes& nodes, Walker& walker, const typename Walker::Entry& first,
+                                  uint32_t& visited, VisitLeaf visit_leaf) {
     using Node = typename Nodes::value_type;
     static_assert(TreeWalker<Walker, Node>);
     if (nodes.empty()) return false;
@@ -62,8 +62,8 @@ HWY_INLINE bool walk_wide_tree(const Nodes& nodes, Walker& walker, const typenam
 
 /// The same of what the leaves hold: visit(primitive, entry).
 template <class Walker, class Visit>
-HWY_INLINE bool walk_primitives(const WideBvh& tree, cpu::TraceContext& context, Walker& walker,
-                                const typename Walker::Entry& first, Visit visit) {
+RELIEF_INLINE bool walk_primitives(const WideBvh& tree, cpu::TraceContext& context, Walker& walker,
+                                   const typename Walker::Entry& first, Visit visit) {
     uint32_t visited = 0;
     const bool has_ended = walk_wide_tree(
         tree.nodes, walker, first,
