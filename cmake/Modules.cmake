@@ -1,7 +1,11 @@
-# relief_unite(TARGET): compiles its sources several at once under RELIEF_UNITY. Names in unnamed namespaces differ within a
-# module for that. Six: of more, a change of one file would compile too many others.
+# relief_unite(TARGET [NUMBER]): compiles its sources so many at once under RELIEF_UNITY. Names in unnamed namespaces differ
+# within a target for that. Six: of more, a change of one file would compile too many others.
 function(relief_unite target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${RELIEF_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+  set(number 6)
+  if(ARGC GREATER 1)
+    set(number ${ARGV1})
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${RELIEF_UNITY} UNITY_BUILD_BATCH_SIZE ${number})
 endfunction()
 
 # relief_module(NAME [SOURCE_DIRECTORY DIR] [EXCLUDE REGEX] [PRECOMPILED HEADERS] MODULES ... LIBRARIES ...): static library
