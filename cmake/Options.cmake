@@ -12,7 +12,7 @@ option(RELIEF_INSTALL "Make rules that install the library and the command" ${PR
 option(RELIEF_WERROR "Treat warnings of Relief's own sources as errors" ${PROJECT_IS_TOP_LEVEL})
 option(BUILD_SHARED_LIBS "Build librelief as a shared library" OFF)
 option(RELIEF_DCHECKS "Check internal contracts at run time" OFF)
-option(RELIEF_UNITY "Compile several sources of a module as one: a whole build takes two thirds of the time" OFF)
+option(RELIEF_UNITY "Compile several sources of a target as one, for shorter builds" OFF)
 set(RELIEF_SANITIZE "" CACHE STRING "Sanitizers for all targets, e.g. address,undefined")
 option(RELIEF_COVERAGE "Instrument for llvm-cov" OFF)
 
