@@ -79,8 +79,9 @@ TEST_F(Buffers, give_their_memory_back) {
     const uint64_t before = device().held_bytes(), all = device().description().memory_bytes;
     for (int round = 0; round < 3; ++round) {
         std::vector<Buffer> buffers;
+        // More than one block, of which other tests may keep one.
         for (uint64_t i = 0; i < 40; ++i)
-            buffers.emplace_back(device(), BufferConfig{.name = "part", .bytes = 1 + i * i * 1500});
+            buffers.emplace_back(device(), BufferConfig{.name = "part", .bytes = 1 + i * i * 5000});
         for (size_t i = 0; i < buffers.size(); i += 2) buffers[i] = Buffer();
         for (uint64_t i = 0; i < 40; ++i)
             buffers.emplace_back(device(), BufferConfig{.name = "part", .bytes = 50'000});
