@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/parallel.h"
 #include "commands.h"
 #include "common/denoiser_search.h"
 #include "common/exit_codes.h"
@@ -37,9 +38,7 @@ namespace relief::cli {
 namespace {
 
 void refuse_picture(const RenderOptions& options) {
-    constexpr std::string_view kPictures[] = {".exr", ".png", ".tif", ".tiff", ".hdr", ".jpg", ".jpeg"};
-    const std::string extension = get_lower_extension(options.input);
-    if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures))
+    if (is_picture_name(options.input))
         throw Error(ErrorKind::usage, {"this is a picture, neither a scene nor a mesh", options.input,
                                        "a map goes with its mesh: relief render MESH --vdm MAP"});
 }
@@ -150,12 +149,6 @@ int render_file(const RenderOptions& options, double start) {
     return render_frames(options, {*shot, load, check}, frames, {start, 0});
 }
 
-int render_input(const RenderOptions& options, double start) {
-    catch_interrupts();
-    if (!is_mesh_file(options.input)) return render_file(options, start);
-    return render_scene(options, load_mesh_scene(options.input, options.mesh), {}, start);
-}
-
 } // namespace
 
 Command add_render(CLI::App& verb) {
@@ -169,7 +162,13 @@ Command add_render(CLI::App& verb) {
             options->denoiser =
                 std::make_shared<const Denoiser>(load_denoiser(options->settings.device.threads));
         int exit_code = kExitDone;
-        with_io_threads(options->settings.device.threads, [&] { exit_code = render_input(*options, start); });
+        with_threads(options->settings.device.threads, [&] {
+            catch_interrupts();
+            exit_code =
+                is_mesh_file(options->input)
+                    ? render_scene(*options, load_mesh_scene(options->input, options->mesh), {}, start)
+                    : render_file(*options, start);
+        });
         return exit_code;
     };
 }

@@ -215,7 +215,7 @@ void add_machine_options(CLI::App& verb, RenderOptions& o) {
         "how rays walk it: auto (default), wide, stack, restart-trail, parent-link, skip-link, trail, "
         "pair-trail; kdtree: push-down, restart, backtrack",
         [&o](const std::string& text) {
-            std::array<Word<TraversalKind>, 11> words;
+            std::array<Word<TraversalKind>, kTraversalCount> words;
             for (size_t k = 0; k < words.size(); ++k)
                 words[k] = {traversal_name(TraversalKind(k)), TraversalKind(k)};
             o.settings.experiment.traversal = parse_word("--traversal", text, words);

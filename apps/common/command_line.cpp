@@ -108,10 +108,7 @@ void refuse_extras(const CLI::App& app, const std::string& command) {
                       app, help);
     }
     const std::string& extra = extras.front();
-    constexpr std::array<std::string_view, 5> kMaps = {".exr", ".tif", ".tiff", ".png", ".hdr"};
-    const bool is_map =
-        std::ranges::any_of(kMaps, [&](std::string_view end) { return extra.ends_with(end); }) &&
-        app.get_option_no_throw("--vdm") != nullptr;
+    const bool is_map = is_picture_name(extra) && app.get_option_no_throw("--vdm") != nullptr;
     throw Error(ErrorKind::usage, {fmt::format("unexpected argument '{}'", extra), "",
                                    is_map ? fmt::format("a map goes with its mesh: --vdm {}", extra) : help});
 }

@@ -40,6 +40,9 @@ struct MeshReaderSettings {
 /// the child process where the arguments ask for it, and returns its exit code. Else nothing.
 std::optional<int> run_mesh_reader(int argument_count, const char* const* arguments);
 
+/// Whether a file is a picture by its extension, in any case: of those that read_image reads.
+bool is_picture_name(const std::filesystem::path& file);
+
 /// Reads a scene file (JSON, `docs/scene.schema.json`). Paths inside are relative to the file. Throws
 /// Error{bad_input} with file, line and column, object and hint; for meshes as load_mesh, for images as
 /// read_image.

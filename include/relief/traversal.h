@@ -1,6 +1,8 @@
 // Acceleration structures and traversals, by name.
 #pragma once
 
+#include <cstddef>
+
 namespace relief {
 
 /// Kind of the scene trees: over instances, and over the patches of a surface.
@@ -19,6 +21,7 @@ enum class TraversalKind {
     push_down,
     backtrack
 };
+inline constexpr size_t kTraversalCount = size_t(TraversalKind::backtrack) + 1; ///< of the last one
 
 /// Relative costs in the surface-area heuristic; the defaults are those of GRAPP 2019.
 struct SahCosts {

@@ -62,8 +62,7 @@ void read_level(const Argument& value, RenderSettings& s) {
 
 void read_traversal(const Argument& value, RenderSettings& s) {
     std::vector<std::string_view> names;
-    for (int k = 0; k <= int(TraversalKind::backtrack); ++k)
-        names.emplace_back(traversal_name(TraversalKind(k)));
+    for (size_t k = 0; k < kTraversalCount; ++k) names.emplace_back(traversal_name(TraversalKind(k)));
     s.experiment.traversal = TraversalKind(value.word(names));
 }
 

@@ -41,14 +41,16 @@ std::optional<Stage> set_up(Scene&& scene, const RenderSettings& settings, const
     }
 }
 
-/// Samples are added whole, so that a lost device loses no others.
-bool render_and_save(Engine& engine, Film& film, const RenderControl& control) {
-    try {
-        return engine.render(film, control);
-    } catch (...) {
-        if (control.save.call) control.save.call();
-        throw;
-    }
+/// `film` and `identity` are read when it saves.
+RenderControl make_control(RenderObserver* observer, const Checkpoints& checkpoints, const Film& film,
+                           const std::string& identity) {
+    RenderControl control(observer);
+    control.save.interval_s = checkpoints.interval_s;
+    if (checkpoints.save)
+        control.save.call = [&] {
+            if (film.most_samples() > 0) checkpoints.save([&](std::ostream& s) { film.write(s, identity); });
+        };
+    return control;
 }
 
 } // namespace
@@ -80,16 +82,15 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
 
         if (observer) observer->on_warnings(stage->scene->warnings);
         const Timer timer;
-        RenderControl control(observer);
-        control.save.interval_s = checkpoints.interval_s;
-        if (checkpoints.save)
-            control.save.call = [&] {
-                if (film.most_samples() > 0)
-                    checkpoints.save([&](std::ostream& s) { film.write(s, identity); });
-            };
+        RenderControl control = make_control(observer, checkpoints, film, identity);
         const PictureSpace space = make_picture_space(*stage->scene);
         show_pictures(film, space, control);
-        result.is_complete = render_and_save(*stage->engine, film, control);
+        try {
+            result.is_complete = stage->engine->render(film, control);
+        } catch (...) { // samples are added whole, so that a lost device loses no others
+            if (control.save.call) control.save.call();
+            throw;
+        }
         statistics.render_s = timer.seconds();
         if (control.save.call) control.save.call();
 

@@ -18,7 +18,7 @@
 
 namespace relief {
 
-/// What one camera sample saw. Layers other than radiance describe the first hit.
+/// What one camera sample saw. All but radiance, cost and shadow describe the first hit.
 struct FilmSample {
     Vec3f radiance{};
     float alpha = 0; ///< 1 where the camera ray hit a surface, or met a light that it sees

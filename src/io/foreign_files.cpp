@@ -45,7 +45,7 @@ constexpr std::string_view kGimp = "GIMP: File > Export As, as .png, .tif or .ex
 constexpr std::string_view kPtex = "Ptex holds a picture a face and Relief reads pictures over uvs: bake it "
                                    "to a mesh with uvs (Mudbox: Maps > Extract Texture Maps > New Operation)";
 
-constexpr std::array<Format, 32> kFormats{{
+constexpr Format kFormats[] = {
     {".blend .blend1", "a Blender file", kBlender},
     {".usd .usda .usdc .usdz", "a USD file", kUsd},
     {".abc", "an Alembic file", kAlembic},
@@ -79,7 +79,7 @@ constexpr std::array<Format, 32> kFormats{{
     {".heic", "a HEIC file", kGimp, Instead::picture},
     {".jp2", "a JPEG 2000 file", kGimp, Instead::picture},
     {".dds", "a DDS file", kGimp, Instead::picture},
-}};
+};
 
 struct GltfExtension {
     std::string_view name, what, way;
@@ -111,8 +111,8 @@ std::optional<ForeignFile> find_foreign_file(std::string_view name) {
         }
         return false;
     };
-    const auto found = std::find_if(kFormats.begin(), kFormats.end(), has_suffix);
-    if (found == kFormats.end()) return std::nullopt;
+    const auto found = std::find_if(std::begin(kFormats), std::end(kFormats), has_suffix);
+    if (found == std::end(kFormats)) return std::nullopt;
     return ForeignFile{fmt::format("{} is not read: {}", found->what, kAlternatives[size_t(found->instead)]),
                        std::string(found->way)};
 }

@@ -36,7 +36,7 @@ const char* traversal_name(TraversalKind traversal) {
     constexpr const char* kNames[] = {"auto",        "wide",      "stack",    "restart-trail",
                                       "parent-link", "skip-link", "trail",    "pair-trail",
                                       "restart",     "push-down", "backtrack"};
-    static_assert(std::size(kNames) == size_t(TraversalKind::backtrack) + 1);
+    static_assert(std::size(kNames) == kTraversalCount);
     return kNames[size_t(traversal)];
 }
 

@@ -1,4 +1,4 @@
-// Names of all layers of a picture.
+// Names of all layers of a picture but motion, which render_moving() sets.
 #pragma once
 
 #include <string>

@@ -114,6 +114,10 @@ std::unique_ptr<PixelSource> open(const OpenStream& open_stream, const std::stri
 
 } // namespace
 
+bool is_picture_name(const std::filesystem::path& file) {
+    return std::ranges::find(kExtensions, get_extension(file.string())) != kExtensions.end();
+}
+
 bool has_near_display(const PixelHeader& header) {
     return header.full_width > 0 && header.full_height > 0 && header.full_width <= 4 * header.width &&
            header.full_height <= 4 * header.height;

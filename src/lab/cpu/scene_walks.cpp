@@ -290,7 +290,7 @@ constexpr WalkPointer (*kMakers[])(WalkTrees) = {
     make_trail_walk<TraversalKind::trail>, make_trail_walk<TraversalKind::pair_trail>,
     make_walk<TraversalKind::restart>,     make_walk<TraversalKind::push_down>,
     make_walk<TraversalKind::backtrack>};
-static_assert(std::size(kMakers) == size_t(TraversalKind::backtrack) - size_t(TraversalKind::stack) + 1);
+static_assert(std::size(kMakers) == kTraversalCount - size_t(TraversalKind::stack));
 
 } // namespace
 
