@@ -20,7 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (const int uv_set : {0, 1}) {
         try {
             relief::check_mesh(relief::parse_gltf({reinterpret_cast<const char*>(data), size}, "fuzz.glb",
-                                                  read_beside, {.uv_set = uv_set}));
+                                                  read_beside,
+                                                  {.uv_set = uv_set, .further_uv_sets = {0, 1}}));
         } catch (const relief::Error&) {
             // refused with a message: what is wanted
         }

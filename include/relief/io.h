@@ -137,6 +137,8 @@ void refuse_foreign_file(const std::filesystem::path& file);
 
 struct MeshReadOptions {
     int uv_set = 0; ///< of glTF and FBX, from 0; OBJ and PLY have only set 0
+    /// Those that are there become Mesh::further_uvs; the mesh's own number is passed over.
+    std::vector<int> further_uv_sets;
     /// Of glTF: name or number, from 0, of the animation that moves nodes and morph targets; empty: they
     /// rest.
     std::string animation;

@@ -62,6 +62,16 @@ struct Subdivision {
     friend bool operator==(const Subdivision&, const Subdivision&) = default;
 };
 
+inline constexpr int kOwnUvSet = -1; ///< of a texture: the set that Mesh::uvs are
+inline constexpr int kMaxUvSet = 255;
+
+/// Another set of uvs of a mesh, for textures of materials that name it.
+struct UvSet {
+    int number = 1; ///< [0, kMaxUvSet], as InputTexture::uv_set names it; another one than Mesh::uv_set
+    std::vector<Vec2f> uvs;
+    std::vector<uint32_t> indices; ///< one a corner; kNoIndex: its face has no uvs in this set
+};
+
 /// Polygon mesh with separate indices for positions, uvs and normals, as in OBJ.
 struct Mesh {
     std::string name;
@@ -77,6 +87,9 @@ struct Mesh {
         tangents;                ///< one per corner: unit x, y, z, and the sign of the bitangent; or empty
     std::vector<Crease> creases; ///< used where the mesh is subdivided
     Subdivision subdivision;     ///< of the rendered surface
+    int uv_set = 0;              ///< number of the set that `uvs` are, [0, kMaxUvSet]
+    /// Other sets, each of its own number. Displacement and tangents go by `uvs` alone.
+    std::vector<UvSet> further_uvs;
 };
 
 enum class DisplacementType { vector, height };
@@ -178,6 +191,9 @@ struct InputTexture {
     MapFilter filter = MapFilter::none; ///< not mip
     WrapMode wrap = WrapMode::repeat;   ///< outside [0, 1]^2; each tile of several ends with its own texels
     Vec2f uv_scale{1, 1}, uv_offset{0, 0};
+    /// Number of a uv set that the meshes of all objects of the material have; not of a normal, whose frame
+    /// goes by the mesh's own.
+    int uv_set = kOwnUvSet;
     friend bool operator==(const InputTexture&, const InputTexture&) = default;
 };
 

@@ -40,7 +40,7 @@ bool passes(const Crossing& crossing, uint32_t k, const SurfacePoint& point) {
     const PreparedScene& scene = crossing.tracer.scene();
     const CutOutPaths& paths = crossing.paths;
     const uint32_t index = find_material(scene, crossing.hits[k]);
-    const WallNumbers wall = find_wall_numbers(scene, index, point.uv);
+    const WallNumbers wall = find_wall_numbers(scene, index, place_hit(scene, crossing.hits[k], point.uv));
     if (!find_clear_wall(scene, index)) return paths.draw(k, crossing.round) >= wall.opacity;
     const float cosine = std::fabs(dot(point.geometric_normal, crossing.rays[k].direction));
     const Vec3f left = scalar::pass_clear_wall(wall.glass, wall.metallic, wall.opacity, cosine);

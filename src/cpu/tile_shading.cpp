@@ -230,7 +230,7 @@ PointMaterial TileTracer::meet_material(size_t k, size_t n) {
     const PreparedScene& scene = tracer_.scene();
     const SurfacePoint& point = points_[k];
     PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
-    vertex_inputs_.set(n, hits_[k].instance, point.uv, m);
+    vertex_inputs_.set(n, hits_[k], point.uv, m);
     if (has_glass_) {
         Path& path = paths_[active_[k]];
         const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t,

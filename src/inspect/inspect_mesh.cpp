@@ -8,6 +8,7 @@
 #include "math/box.h"
 #include "relief/inspect.h"
 #include "scene/face_uvs.h"
+#include "scene/uv_sets.h"
 
 namespace relief {
 
@@ -139,6 +140,13 @@ std::string list_tiles(const std::set<int>& tiles) {
     return text;
 }
 
+/// Where there are several.
+void add_uv_sets(const Mesh& mesh, Inspection& result) {
+    if (mesh.further_uvs.empty()) return;
+    const size_t count = mesh.further_uvs.size() + (mesh.uv_indices.empty() ? 0 : 1);
+    result.facts.push_back({"uv_sets", describe_uv_sets(mesh), {{"", double(count), "count"}}});
+}
+
 void describe_uvs(const MeshUvs& uvs, const Displacement* map, Inspection& result) {
     result.facts.push_back(
         {"uv_range",
@@ -248,6 +256,7 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
         describe_uvs(uvs, displacement, result);
         find_uv_mistakes(uvs, displacement, result.findings);
     }
+    add_uv_sets(mesh, result);
     find_face_mistakes(shape, result.findings);
     find_edge_mistakes(shape, result.findings);
     return result;

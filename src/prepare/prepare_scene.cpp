@@ -125,8 +125,7 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
     prepared.mesh_count = uint32_t(scene.meshes.size());
     prepared.width = settings.image.width, prepared.height = settings.image.height;
 
-    const SurfaceList list =
-        list_surfaces(scene, uint32_t(prepared.materials.size()) - 1, prepared.instances);
+    const SurfaceList list = list_surfaces(scene, prepared.materials, prepared.instances);
     prepared.has_shadow_catchers = has_shadow_catchers(scene);
     parts.taken_off = move_meshes_to_origin(scene, same.meshes);
     for (size_t k = 0; k < same.meshes.size(); ++k)

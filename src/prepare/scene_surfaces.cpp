@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "math/affine.h"
+#include "scene/uv_sets.h"
 #include "surface/map/displacement_map.h"
 
 namespace relief {
@@ -47,6 +48,21 @@ bool is_same_map(const DisplacementMap& a, const DisplacementMap& b) {
            a.has_autobump == b.has_autobump && a.is_smooth == b.is_smooth;
 }
 
+/// Whether a surface has those of the mesh's further uvs that are asked for, and no others.
+bool has_uv_sets(const Surface& surface, const Mesh& mesh, const std::vector<int>& uv_sets) {
+    std::vector<int> wanted, found;
+    for (const UvSet& set : mesh.further_uvs)
+        if (std::ranges::find(uv_sets, set.number) != uv_sets.end()) wanted.push_back(set.number);
+    for (const PatchUvs& set : surface.further_uvs) found.push_back(set.number);
+    return wanted == found;
+}
+
+/// Adds what is not there yet.
+void add_uv_sets(const std::vector<int>& numbers, std::vector<int>& list) {
+    for (const int number : numbers)
+        if (std::ranges::find(list, number) == list.end()) list.push_back(number);
+}
+
 /// Makes the surfaces of one scene, of several meshes at once.
 class SurfaceMaker {
   public:
@@ -60,13 +76,15 @@ class SurfaceMaker {
 
     Surface make(const SurfaceKey& key, SurfaceChange& change) {
         const Object& object = scene_.objects[list_.first_object[change.surface]];
+        const std::vector<int>& uv_sets = list_.uv_sets[change.surface];
         const Displacement* displacement =
             object.displacement == kNoIndex ? nullptr : &scene_.displacements[object.displacement];
         const Affine object_from_world = *invert(object.world_from_object);
-        std::optional<Surface> kept = take(key);
+        std::optional<Surface> kept = take(key, uv_sets);
         if (!kept) {
             change.is_replaced = true;
-            return make_surface(scene_.meshes[object.mesh], displacement, object_from_world, &pyramids_);
+            return make_surface(scene_.meshes[object.mesh], displacement, object_from_world, &pyramids_,
+                                uv_sets);
         }
         kept->corner_tangents.clear();
         if (displacement) change_map(*displacement, object_from_world, *kept, change);
@@ -75,12 +93,14 @@ class SurfaceMaker {
 
   private:
     /// The surface of a key before, if nothing but its map may differ.
-    std::optional<Surface> take(const SurfaceKey& key) const {
+    std::optional<Surface> take(const SurfaceKey& key, const std::vector<int>& uv_sets) const {
         const auto [mesh, displacement, object] = key;
         if (!before_ || !same_.meshes[mesh] || (displacement != kNoIndex && !same_.bases[displacement]))
             return std::nullopt;
         const auto found = before_->surfaces.find(key);
         if (found == before_->surfaces.end()) return std::nullopt;
+        if (!has_uv_sets(before_->prepared.scene->surfaces[found->second], scene_.meshes[mesh], uv_sets))
+            return std::nullopt;
         return std::move(before_->prepared.scene->surfaces[found->second]);
     }
 
@@ -102,13 +122,18 @@ class SurfaceMaker {
 
 } // namespace
 
-SurfaceList list_surfaces(const Scene& scene, uint32_t default_material, std::vector<Instance>& instances) {
+SurfaceList list_surfaces(const Scene& scene, const std::vector<Material>& materials,
+                          std::vector<Instance>& instances) {
+    std::vector<std::vector<int>> of_material;
+    for (const Material& material : materials) of_material.push_back(list_uv_sets(material));
+    const auto default_material = uint32_t(materials.size()) - 1;
     SurfaceList list;
     for (uint32_t k = 0; k < scene.objects.size(); ++k) {
         const auto [place, is_new] =
             list.numbers.try_emplace(make_key(scene, k), uint32_t(list.first_object.size()));
-        if (is_new) list.first_object.push_back(k);
+        if (is_new) list.first_object.push_back(k), list.uv_sets.emplace_back();
         instances.push_back(make_instance(scene.objects[k], place->second, default_material));
+        add_uv_sets(of_material[instances.back().material], list.uv_sets[place->second]);
     }
     return list;
 }

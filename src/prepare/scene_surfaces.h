@@ -7,14 +7,17 @@
 
 namespace relief {
 
-/// One surface a key, in the order of first use. `first_object`: of each surface.
+/// One surface a key, in the order of first use.
 struct SurfaceList {
     SurfaceNumbers numbers;
-    std::vector<uint32_t> first_object;
+    std::vector<uint32_t> first_object;    ///< of each surface
+    std::vector<std::vector<int>> uv_sets; ///< of each, those that textures of its materials name
 };
 
-/// Also makes the instances, without places and levels. `default_material`: of objects that name none.
-SurfaceList list_surfaces(const Scene& scene, uint32_t default_material, std::vector<Instance>& instances);
+/// Also makes the instances, without places and levels. The last one of `materials` is that of objects that
+/// name none.
+SurfaceList list_surfaces(const Scene& scene, const std::vector<Material>& materials,
+                          std::vector<Instance>& instances);
 
 /// What surfaces are made of is moved out of `before`; the result tells what of each differs from it,
 /// patches of other mips aside.

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "scene/face_uvs.h"
+#include "scene/uv_sets.h"
 #include "surface/mesh/degenerate_faces.h"
 
 namespace relief {
@@ -67,6 +68,16 @@ void warn_of_faces_without_uvs(const Mesh& mesh, std::vector<std::string>& warni
         mesh.name, faces.count, mesh.face_sizes.size(), faces.first));
 }
 
+/// Of a further set that textures of the material lie on.
+void warn_of_faces_without_set(const Mesh& mesh, const UvSet& set, std::vector<std::string>& warnings) {
+    const FacesWithoutUvs faces = find_faces_without_uvs(mesh.face_sizes, set.indices);
+    if (faces.count == 0) return;
+    warnings.push_back(
+        fmt::format("mesh '{}': {} of {} faces have no uvs in set {}: textures on it are read at "
+                    "(0, 0) there; the first is face {}",
+                    mesh.name, faces.count, mesh.face_sizes.size(), set.number, faces.first));
+}
+
 bool is_black(const Vec3f& color) { return color.x == 0 && color.y == 0 && color.z == 0; }
 
 void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
@@ -94,6 +105,9 @@ std::vector<std::string> find_scene_warnings(const Scene& scene) {
     warn_of_darkness(scene, warnings);
     std::set<std::pair<uint32_t, uint32_t>> pairs;
     std::set<uint32_t> meshes, read_meshes;
+    std::set<std::pair<uint32_t, int>> read_sets;
+    std::vector<std::vector<int>> uv_sets; // of materials
+    for (const Material& material : scene.materials) uv_sets.push_back(list_uv_sets(material));
     std::set<uint32_t> used;
     for (const Object& object : scene.objects)
         if (used.insert(object.mesh).second) warn_of_degenerate_faces(scene.meshes[object.mesh], warnings);
@@ -102,6 +116,12 @@ std::vector<std::string> find_scene_warnings(const Scene& scene) {
                                (object.material != kNoIndex && has_texture(scene.materials[object.material]));
         if (reads_uvs && read_meshes.insert(object.mesh).second)
             warn_of_faces_without_uvs(scene.meshes[object.mesh], warnings);
+        if (object.material != kNoIndex)
+            for (const UvSet& set : scene.meshes[object.mesh].further_uvs)
+                if (std::ranges::find(uv_sets[object.material], set.number) !=
+                        uv_sets[object.material].end() &&
+                    read_sets.insert({object.mesh, set.number}).second)
+                    warn_of_faces_without_set(scene.meshes[object.mesh], set, warnings);
         if (object.displacement == kNoIndex) continue;
         const Mesh& mesh = scene.meshes[object.mesh];
         if (pairs.insert({object.mesh, object.displacement}).second)

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "formulas/normal_map.h"
+#include "formulas/surface_point.h"
 #include "relief/error.h"
 #include "surface/mesh/corner_tangents.h"
 
@@ -90,8 +91,8 @@ void tessellate_patch(const Surface& surface, uint32_t patch, const PatchLevels&
             const Vec3f normal = compute_shading_normal(surface, patch, levels.patch, u, v);
             result.frames[at] = pack_frame(normal, {0, 0, 0}, 1);
             const auto& uvs = surface.uvs;
-            result.uvs[at] = (uvs[quad.vertex[0]] * (1 - u) + uvs[quad.vertex[1]] * u) * (1 - v) +
-                             (uvs[quad.vertex[3]] * (1 - u) + uvs[quad.vertex[2]] * u) * v;
+            result.uvs[at] = scalar::blend_patch_uv(uvs[quad.vertex[0]], uvs[quad.vertex[1]],
+                                                    uvs[quad.vertex[2]], uvs[quad.vertex[3]], {u, v});
         }
     for (uint32_t j = 0; j < side; ++j)
         for (uint32_t i = 0; i < side; ++i) {
@@ -123,6 +124,23 @@ void tessellate_tangents(const Surface& surface, uint32_t patch, const PatchLeve
         }
 }
 
+/// Further uvs at the corners of a patch's micro-quads, the first of which is `cell`.
+void tessellate_uvs(const Surface& surface, uint32_t patch, const PatchLevels& levels, uint64_t cell,
+                    Surface& result) {
+    const uint32_t side = 1u << levels.patch;
+    for (size_t n = 0; n < surface.further_uvs.size(); ++n) {
+        const std::array<Vec2f, 4>& c = surface.further_uvs[n].corners[patch];
+        const auto at = [&](uint32_t i, uint32_t j) {
+            return scalar::blend_patch_uv(c[0], c[1], c[2], c[3],
+                                          {float(i) / float(side), float(j) / float(side)});
+        };
+        for (uint32_t j = 0; j < side; ++j)
+            for (uint32_t i = 0; i < side; ++i)
+                result.further_uvs[n].corners[cell + uint64_t(j) * side + i] = {
+                    at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+    }
+}
+
 Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
     const PatchOffsets offsets = compute_offsets(surface, levels);
     Surface result;
@@ -134,12 +152,18 @@ Surface tessellate_surface(const Surface& surface, const LevelField& levels) {
     result.quads.reset(offsets.cell.back(), uint32_t(offsets.vertex.back()));
     const bool has_tangents = !surface.corner_tangents.empty();
     if (has_tangents) result.corner_tangents.resize(offsets.cell.back());
+    for (const PatchUvs& set : surface.further_uvs) {
+        PatchUvs& uvs = result.further_uvs.emplace_back();
+        uvs.number = set.number;
+        uvs.corners.resize(offsets.cell.back());
+    }
     parallel_for("tessellate", surface.patch_count(), 16, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             const uint32_t patch = uint32_t(k);
             const PatchLevels patch_levels = levels.at(patch);
             tessellate_patch(surface, patch, patch_levels, offsets.vertex[k], offsets.cell[k], result);
             if (has_tangents) tessellate_tangents(surface, patch, patch_levels, offsets.cell[k], result);
+            tessellate_uvs(surface, patch, patch_levels, offsets.cell[k], result);
         }
     });
     return result;
@@ -164,8 +188,10 @@ TessellationCost estimate_tessellation(const PreparedScene& scene) {
         const MicroCounts counts = count_micro(surface, *scene.instances[k].levels);
         const uint64_t tangent_bytes =
             surface.corner_tangents.empty() ? 0 : counts.quads * sizeof(surface.corner_tangents[0]);
+        const uint64_t uv_bytes =
+            surface.further_uvs.size() * counts.quads * sizeof(surface.further_uvs[0].corners[0]);
         const uint64_t bytes = QuadList::byte_count(counts.quads, counts.vertices) +
-                               counts.vertices * kBytesPerVertex + tangent_bytes;
+                               counts.vertices * kBytesPerVertex + tangent_bytes + uv_bytes;
         cost.micro_quads += counts.quads;
         cost.geometry_bytes += bytes;
         cost.peak_bytes += bytes + counts.quads * kBuildBytesPerQuad;

@@ -31,7 +31,8 @@ PlacedTexture place_texture(const InputTexture& texture) {
                          .is_smooth = is_smooth(texture.filter),
                          .wrap = texture.is_udim ? WrapMode::clamp : texture.wrap,
                          .uv_scale = texture.uv_scale,
-                         .uv_offset = texture.uv_offset};
+                         .uv_offset = texture.uv_offset,
+                         .uv_set = texture.uv_set};
     for (const MapTile& tile : texture.tiles) {
         const size_t index = texture.is_udim ? size_t(tile.udim - 1001) : 0;
         if (placed.tiles.size() <= index) placed.tiles.resize(index + 1);

@@ -24,6 +24,8 @@ struct PlacedTexture {
     bool is_udim, is_smooth;
     WrapMode wrap;
     Vec2f uv_scale, uv_offset;
+    int uv_set; ///< as InputTexture::uv_set; that of the mesh where a surface has no further uvs of the
+                ///< number
 };
 
 struct TexturedMaterial {

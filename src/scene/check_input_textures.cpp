@@ -58,6 +58,12 @@ void check_input_texture(const Material& material, const InputTexture& texture, 
                 refuse(where,
                        fmt::format("{} is {}, not in [{}, {}]", what, number, -kFarthestUv, kFarthestUv));
     check_tiles(where, texture);
+    if (texture.uv_set < kOwnUvSet || texture.uv_set > kMaxUvSet)
+        refuse(where, fmt::format("uv_set is {}, not in [0, {}]", texture.uv_set, kMaxUvSet));
+    if (texture.uv_set != kOwnUvSet && texture.input == MaterialInput::normal)
+        refuse(where,
+               "a normal map cannot have a uv_set: its directions go by the uvs that the mesh is read with",
+               "name its set as uv_set of the mesh, and the other one as that of the other textures");
     if (texture.input == MaterialInput::specular_weight && material.transmission_weight > 0)
         refuse(where, "a texture would give a body of glass an ior that changes over its surface",
                "texture transmission_weight or specular_color, or make the number constant");

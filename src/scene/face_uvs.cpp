@@ -7,8 +7,8 @@ namespace relief {
 namespace {
 
 /// Of the face whose first corner is `first`.
-bool has_uvs(const Mesh& mesh, size_t first) {
-    return first < mesh.uv_indices.size() && mesh.uv_indices[first] != kNoIndex;
+bool has_uvs(const std::vector<uint32_t>& uv_indices, size_t first) {
+    return first < uv_indices.size() && uv_indices[first] != kNoIndex;
 }
 
 template <class Value>
@@ -20,17 +20,22 @@ void append(const std::vector<Value>& from, size_t first, size_t count, std::vec
 } // namespace
 
 FacesWithoutUvs find_faces_without_uvs(const Mesh& mesh) {
+    return find_faces_without_uvs(mesh.face_sizes, mesh.uv_indices);
+}
+
+FacesWithoutUvs find_faces_without_uvs(const std::vector<uint32_t>& face_sizes,
+                                       const std::vector<uint32_t>& uv_indices) {
     FacesWithoutUvs result;
-    if (mesh.uv_indices.empty()) return result;
+    if (uv_indices.empty()) return result;
     size_t first = 0;
-    for (size_t face = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face], ++face)
-        if (!has_uvs(mesh, first) && result.count++ == 0) result.first = face;
+    for (size_t face = 0; face < face_sizes.size(); first += face_sizes[face], ++face)
+        if (!has_uvs(uv_indices, first) && result.count++ == 0) result.first = face;
     return result;
 }
 
 double compute_uv_area(const Mesh& mesh, size_t first, uint32_t size) {
     double area = 0;
-    for (uint32_t k = 0; k < size && has_uvs(mesh, first); ++k) {
+    for (uint32_t k = 0; k < size && has_uvs(mesh.uv_indices, first); ++k) {
         const Vec2f& a = mesh.uvs[mesh.uv_indices[first + k]];
         const Vec2f& b = mesh.uvs[mesh.uv_indices[first + (k + 1) % size]];
         area += (double(a.x) * b.y - double(a.y) * b.x) / 2;
@@ -62,7 +67,7 @@ Mesh drop_faces_without_uvs(const Mesh& mesh) {
     result.creases = mesh.creases, result.subdivision = mesh.subdivision;
     size_t first = 0;
     for (const uint32_t size : mesh.face_sizes) {
-        if (has_uvs(mesh, first)) {
+        if (has_uvs(mesh.uv_indices, first)) {
             result.face_sizes.push_back(size);
             append(mesh.position_indices, first, size, result.position_indices);
             append(mesh.uv_indices, first, size, result.uv_indices);

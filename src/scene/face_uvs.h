@@ -16,6 +16,9 @@ struct FacesWithoutUvs {
 
 /// None of a mesh that has no uvs at all. Entries of uv_indices beyond its end count as missing.
 FacesWithoutUvs find_faces_without_uvs(const Mesh& mesh);
+/// The same of one set of uvs of faces of these sizes.
+FacesWithoutUvs find_faces_without_uvs(const std::vector<uint32_t>& face_sizes,
+                                       const std::vector<uint32_t>& uv_indices);
 
 /// Signed area of the face whose `size` corners begin at `first`; 0 where it has no uvs.
 double compute_uv_area(const Mesh& mesh, size_t first, uint32_t size);

@@ -17,6 +17,7 @@
 #include "scene/check_input_textures.h"
 #include "scene/displacement_conventions.h"
 #include "scene/object_names.h"
+#include "scene/uv_sets.h"
 
 namespace relief {
 
@@ -28,6 +29,11 @@ namespace {
 
 std::string describe(const char* kind, const std::string& name, size_t index) {
     return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} '{}'", kind, name);
+}
+
+std::string describe_mesh(const Mesh& mesh, size_t index) {
+    const std::string name = describe("mesh", mesh.name, index);
+    return mesh.source.empty() ? name : name + " (" + mesh.source + ")";
 }
 
 void check_range(const std::string& where, const char* what, float value, float low, float high) {
@@ -67,35 +73,56 @@ void check_indices(const std::string& where, const char* what, const std::vector
 }
 
 /// A face has a uv at each of its corners, or at none of them.
-void check_uv_indices(const std::string& where, const Mesh& mesh, size_t corners) {
-    if (mesh.uv_indices.size() != corners) {
-        check_indices(where, "uv", mesh.uv_indices, corners, mesh.uvs.size());
+void check_uv_indices(const std::string& where, const Mesh& mesh, size_t corners,
+                      const std::vector<uint32_t>& uv_indices, size_t uv_count) {
+    if (uv_indices.size() != corners) {
+        check_indices(where, "uv", uv_indices, corners, uv_count);
         return;
     }
     bool has_uvs = false;
     size_t first = 0;
     for (size_t face = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face], ++face) {
-        const std::span<const uint32_t> indices(mesh.uv_indices.data() + first, mesh.face_sizes[face]);
+        const std::span<const uint32_t> indices(uv_indices.data() + first, mesh.face_sizes[face]);
         const auto missing = size_t(std::count(indices.begin(), indices.end(), kNoIndex));
         if (missing != 0 && missing != indices.size())
             fail(where, fmt::format("face {} has {} uvs for {} corners", face, indices.size() - missing,
                                     indices.size()));
         has_uvs = has_uvs || missing == 0;
         for (size_t k = 0; missing == 0 && k < indices.size(); ++k)
-            if (indices[k] >= mesh.uvs.size())
+            if (indices[k] >= uv_count)
                 fail(where,
                      fmt::format("uv index {} of corner {} is out of range: there are {}", indices[k],
-                                 first + k, mesh.uvs.size()),
+                                 first + k, uv_count),
                      "the mesh is damaged: export it again");
     }
     if (!has_uvs) fail(where, "has uv indices, but no face has uvs", "leave them out");
 }
 
+void check_uvs(const std::string& where, const std::vector<Vec2f>& uvs) {
+    for (size_t i = 0; i < uvs.size(); ++i)
+        if (!std::isfinite(uvs[i].x) || !std::isfinite(uvs[i].y))
+            fail(where, fmt::format("uv {} is not finite", i));
+}
+
+void check_further_uvs(const std::string& where, const Mesh& mesh, size_t corners) {
+    std::set<int> numbers{mesh.uv_set};
+    if (mesh.uv_set < 0 || mesh.uv_set > kMaxUvSet)
+        fail(where, fmt::format("the number of its uv set is {}, not in [0, {}]", mesh.uv_set, kMaxUvSet));
+    for (const UvSet& set : mesh.further_uvs) {
+        const std::string place = fmt::format("{}, uv set {}", where, set.number);
+        if (set.number < 0 || set.number > kMaxUvSet)
+            fail(place, fmt::format("the number is not in [0, {}]", kMaxUvSet));
+        if (!numbers.insert(set.number).second)
+            fail(place, "there are two sets of this number", "uv_set is the number of the mesh's own");
+        check_uv_indices(place, mesh, corners, set.indices, set.uvs.size());
+        check_uvs(place, set.uvs);
+    }
+}
+
 } // namespace
 
 void validate_mesh(const Mesh& mesh, size_t index) {
-    std::string where = describe("mesh", mesh.name, index);
-    if (!mesh.source.empty()) where += " (" + mesh.source + ")";
+    const std::string where = describe_mesh(mesh, index);
     size_t corners = 0;
     for (size_t f = 0; f < mesh.face_sizes.size(); ++f) {
         if (mesh.face_sizes[f] < 3) fail(where, fmt::format("face {} has {} corners", f, mesh.face_sizes[f]));
@@ -103,7 +130,7 @@ void validate_mesh(const Mesh& mesh, size_t index) {
     }
     if (mesh.face_sizes.empty()) fail(where, "has no faces");
     check_indices(where, "position", mesh.position_indices, corners, mesh.positions.size());
-    if (!mesh.uv_indices.empty()) check_uv_indices(where, mesh, corners);
+    if (!mesh.uv_indices.empty()) check_uv_indices(where, mesh, corners, mesh.uv_indices, mesh.uvs.size());
     if (!mesh.normal_indices.empty())
         check_indices(where, "normal", mesh.normal_indices, corners, mesh.normals.size());
     if (!mesh.tangents.empty() && mesh.tangents.size() != corners)
@@ -117,9 +144,8 @@ void validate_mesh(const Mesh& mesh, size_t index) {
             fail(where, fmt::format("position {} is farther out than {:g}", i, kFarthest),
                  "use another unit of length");
     }
-    for (size_t i = 0; i < mesh.uvs.size(); ++i)
-        if (!std::isfinite(mesh.uvs[i].x) || !std::isfinite(mesh.uvs[i].y))
-            fail(where, fmt::format("uv {} is not finite", i));
+    check_uvs(where, mesh.uvs);
+    check_further_uvs(where, mesh, corners);
     for (size_t i = 0; i < mesh.normals.size(); ++i)
         if (!is_finite(mesh.normals[i])) fail(where, fmt::format("normal {} is not finite", i));
     const int level = mesh.subdivision.level;
@@ -269,6 +295,17 @@ const char* find_tangent_input(const Material& material) {
     return is_anisotropic(material) ? "coat_roughness_anisotropy" : nullptr;
 }
 
+/// The mesh has the uv sets that textures of the material lie on.
+void check_uv_sets(const std::string& where, const Mesh& mesh, size_t mesh_index, const Material& material) {
+    for (const InputTexture& texture : material.textures)
+        if (texture.uv_set != kOwnUvSet && !has_uv_set(mesh, texture.uv_set))
+            fail(where,
+                 fmt::format("the {} of its material '{}' lies on uv set {}, and {} has {}",
+                             get_input_name(texture.input), material.name, texture.uv_set,
+                             describe_mesh(mesh, mesh_index), describe_uv_sets(mesh)),
+                 "sets count from 0, as TEXCOORD_0 of glTF does: name another, or export the mesh with it");
+}
+
 void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const Object& object,
                   size_t index) {
     const std::string where = describe("object", object.name, index);
@@ -288,7 +325,9 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
              fmt::format("{} has no uvs, which its displacement needs",
                          describe("mesh", mesh.name, object.mesh)),
              "export the mesh with texture coordinates");
-    if (object.material == kNoIndex || !mesh.uv_indices.empty()) return;
+    if (object.material == kNoIndex) return;
+    check_uv_sets(where, mesh, object.mesh, scene.materials[object.material]);
+    if (!mesh.uv_indices.empty()) return;
     if (const char* input = find_tangent_input(scene.materials[object.material]))
         fail(where,
              fmt::format("{} has no uvs, which the {} of its material needs",

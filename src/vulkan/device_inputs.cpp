@@ -20,7 +20,7 @@ void put_items(const std::vector<Item>& items, size_t first, std::vector<uint32_
         std::memcpy(words.data() + first * kWords<Item>, items.data(), items.size() * sizeof(Item));
 }
 
-scalar::InputTextureData make_texture(const PlacedTexture& texture) {
+scalar::InputTextureData make_texture(const PlacedTexture& texture, const DeviceScene& device_scene) {
     return {texture.place.first,
             texture.place.count,
             texture.is_number ? 1u : 0u,
@@ -29,7 +29,8 @@ scalar::InputTextureData make_texture(const PlacedTexture& texture) {
             texture.uv_scale,
             texture.uv_offset,
             0,
-            uint32_t(texture.tiles.size())};
+            uint32_t(texture.tiles.size()),
+            device_scene.uv_set_index(texture.uv_set)};
 }
 
 bool has_normal(const TexturedMaterial& material) {
@@ -57,7 +58,8 @@ std::vector<uint32_t> join_inputs(std::vector<scalar::MaterialData> materials, c
                           has_normal(material) ? 1u : 0u,
                           uint32_t(first_texture + textures.size()),
                           uint32_t(material.textures.size())});
-        for (const PlacedTexture& texture : material.textures) textures.push_back(make_texture(texture));
+        for (const PlacedTexture& texture : material.textures)
+            textures.push_back(make_texture(texture, device_scene));
     }
     for (size_t k = 0; k < materials.size(); ++k) {
         const uint32_t place = textured.empty() ? kNoIndex : textured.of_material[k];

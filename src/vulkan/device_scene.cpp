@@ -92,6 +92,11 @@ uint32_t DeviceScene::texture_index(const Texture* texture) const {
     return texture ? texture_indices_.at(texture) : kNone;
 }
 
+uint32_t DeviceScene::uv_set_index(int number) const {
+    const auto found = std::ranges::find(uv_sets_, number);
+    return found == uv_sets_.end() ? kNone : uint32_t(found - uv_sets_.begin());
+}
+
 std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) const {
     set_constant(constants, scalar::kSmoothConstant, has_smooth_ ? 1 : 0);
     set_constant(constants, scalar::kBicubicConstant, has_bicubic_ ? 1 : 0);
@@ -115,6 +120,7 @@ std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constan
     constants = add_filter(std::move(constants));
     set_constant(constants, scalar::kNormalMapsConstant, has_normal_maps_ ? 1 : 0);
     set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
+    set_constant(constants, scalar::kUvSetsConstant, uv_sets_.empty() ? 0 : 1);
     set_constant(constants, scalar::kAnisotropyConstant, has_anisotropy_ ? 1 : 0);
     return constants;
 }
@@ -125,6 +131,7 @@ std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) c
     set_constant(constants, scalar::kGlassConstant, has_glass_ ? 1 : 0);
     set_constant(constants, scalar::kTerminatorsConstant, uint32_t(terminators_));
     set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
+    set_constant(constants, scalar::kUvSetsConstant, uv_sets_.empty() ? 0 : 1);
     set_constant(constants, scalar::kAnisotropyConstant, has_anisotropy_ ? 1 : 0);
     return constants;
 }
@@ -182,7 +189,23 @@ void DeviceScene::add_map(const Surface& surface) {
     tables_.maps.push_back(data);
 }
 
+uint32_t DeviceScene::add_uv_sets(const Surface& surface, Arrays& arrays) const {
+    if (surface.further_uvs.empty()) return kNone;
+    const uint32_t first = uint32_t(arrays.override_bits.size());
+    for (const int number : uv_sets_) {
+        const PatchUvs* set = surface.find_further_uvs(number);
+        arrays.override_bits.push_back(set ? uint32_t(arrays.uvs.size()) : kNone);
+        if (!set) continue;
+        for (const std::array<Vec2f, 4>& corners : set->corners)
+            arrays.uvs.insert(arrays.uvs.end(), corners.begin(), corners.end());
+    }
+    return first;
+}
+
 void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
+    for (const Surface& surface : scene.surfaces)
+        for (const PatchUvs& set : surface.further_uvs)
+            if (std::ranges::find(uv_sets_, set.number) == uv_sets_.end()) uv_sets_.push_back(set.number);
     for (const Surface& surface : scene.surfaces) {
         scalar::SurfaceData data{};
         data.first_vertex = uint32_t(arrays.positions.size());
@@ -215,6 +238,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         data.first_tangent = surface.corner_tangents.empty() ? kNone : uint32_t(arrays.override_bits.size());
         for (const std::array<uint32_t, 4>& tangents : surface.corner_tangents)
             arrays.override_bits.insert(arrays.override_bits.end(), tangents.begin(), tangents.end());
+        data.first_uv_set = add_uv_sets(surface, arrays);
         data.has_bilinear_uvs = surface.has_bilinear_uvs ? 1 : 0;
         data.map = surface.has_displacement ? uint32_t(tables_.maps.size()) : kNone;
         if (surface.has_displacement) add_map(surface);

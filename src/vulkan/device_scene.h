@@ -37,6 +37,8 @@ class DeviceScene {
     const Buffer& nodes() const { return nodes_; }
     /// Index into the table of textures; scalar::kNone for null.
     uint32_t texture_index(const Texture* texture) const;
+    /// InputTextureData::uv_set of a number of a set; scalar::kNone: no surface has it beside its own.
+    uint32_t uv_set_index(int number) const;
     /// Constants of a kernel that reads maps or textures, or adds to the film, with scalar::kSmoothConstant
     /// and kShadowCatchersConstant where the scene needs them.
     std::vector<uint32_t> add_filter(std::vector<uint32_t> constants) const;
@@ -45,11 +47,12 @@ class DeviceScene {
     std::vector<uint32_t> add_contents(std::vector<uint32_t> constants, LodRule lod) const;
     /// The same with scalar::kCollectsConstant.
     static std::vector<uint32_t> add_collecting(std::vector<uint32_t> constants);
-    /// The same as add_filter, and scalar::kNormalMapsConstant, kInputTexturesConstant and
+    /// The same as add_filter, and scalar::kNormalMapsConstant, kInputTexturesConstant, kUvSetsConstant and
     /// kAnisotropyConstant, for the kernel that finds shading normals.
     std::vector<uint32_t> add_normal_maps(std::vector<uint32_t> constants) const;
     /// That of add_filter, and scalar::kLayersConstant, kGlassConstant, kTerminatorsConstant,
-    /// kInputTexturesConstant and kAnisotropyConstant, for a kernel that knows what scatters.
+    /// kInputTexturesConstant, kUvSetsConstant and kAnisotropyConstant, for a kernel that knows what
+    /// scatters.
     std::vector<uint32_t> add_layers(std::vector<uint32_t> constants) const;
 
   private:
@@ -63,6 +66,8 @@ class DeviceScene {
     void add_textures(const Device& device, const PreparedScene& scene);
     void add_map(const Surface& surface);
     void add_surfaces(const PreparedScene& scene, Arrays& arrays);
+    /// Returns SurfaceData::first_uv_set.
+    uint32_t add_uv_sets(const Surface& surface, Arrays& arrays) const;
     void add_instances(const PreparedScene& scene, Arrays& arrays);
     void add_tree_levels(const PreparedScene& scene);
     void add_trees(const PreparedScene& scene, Arrays& arrays);
@@ -71,6 +76,7 @@ class DeviceScene {
 
     Tables tables_;
     std::map<const Texture*, uint32_t> texture_indices_;
+    std::vector<int> uv_sets_; ///< numbers of the further sets of all surfaces
     TraversalKernel traversal_kernel_{"scene_traversal", {}, {}};
     uint32_t root_ = scalar::kNone, patch_count_ = 0, stack_size_ = 0, tree_levels_ = 0;
     uint64_t tree_bytes_ = 0;

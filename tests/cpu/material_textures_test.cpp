@@ -148,7 +148,9 @@ float find_opacity_at(const InputTexture& texture, const Vec2f& uv) {
     Material material;
     material.textures = {texture};
     const TexturedMaterials made = make_textured_materials({material});
-    const scalar::InputNumbers found = cpu::find_inputs(made.list.at(0), made.list.at(0).numbers, uv);
+    const Surface surface;
+    const scalar::InputNumbers found =
+        cpu::find_inputs(made.list.at(0), made.list.at(0).numbers, {surface, 0, {}, uv});
     return found.word[scalar::kInputOpacity];
 }
 

@@ -46,6 +46,13 @@ TEST(MeshInspection, a_strip_of_quads_has_no_findings) {
     EXPECT_EQ(get_fact(inspection, "tangents"), "made from uvs");
 }
 
+TEST(MeshInspection, uv_sets_are_told_where_there_are_several) {
+    Mesh mesh = make_strip(2);
+    for (const Fact& fact : inspect_mesh(mesh).facts) EXPECT_NE(fact.name, "uv_sets");
+    mesh.uv_set = 1, mesh.further_uvs = {{3, mesh.uvs, mesh.uv_indices}, {0, mesh.uvs, mesh.uv_indices}};
+    EXPECT_EQ(get_fact(inspect_mesh(mesh), "uv_sets"), "uv sets 0, 1 and 3");
+}
+
 TEST(MeshInspection, missing_uvs_matter_more_with_a_map) {
     Mesh mesh = make_strip(2);
     mesh.uvs.clear(), mesh.uv_indices.clear();

@@ -38,6 +38,13 @@ void expect_equal(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.normal_indices, b.normal_indices);
     EXPECT_EQ(a.tangents, b.tangents);
     EXPECT_EQ(a.creases, b.creases);
+    EXPECT_EQ(a.uv_set, b.uv_set);
+    ASSERT_EQ(a.further_uvs.size(), b.further_uvs.size());
+    for (size_t k = 0; k < a.further_uvs.size(); ++k) {
+        EXPECT_EQ(a.further_uvs[k].number, b.further_uvs[k].number);
+        EXPECT_EQ(a.further_uvs[k].uvs, b.further_uvs[k].uvs);
+        EXPECT_EQ(a.further_uvs[k].indices, b.further_uvs[k].indices);
+    }
 }
 
 /// An executable script in place of a reader.
@@ -114,7 +121,7 @@ TEST_F(ChildReader, programs_that_leave_no_mesh_end_in_a_message) {
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }, ErrorKind::failed), "cannot be started");
     options.reader.program = make_program(write("silent", "#!/bin/sh\nexit 4\n"));
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }), "ended without a mesh (exit 4)");
-    options.reader.program = make_program(write("noise", "#!/bin/sh\nprintf reliefM1andthensome >&3\n"));
+    options.reader.program = make_program(write("noise", "#!/bin/sh\nprintf reliefM2andthensome >&3\n"));
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }), "ended without a mesh (exit 0)");
     options.reader.program = make_program(write("killed", "#!/bin/sh\nkill -9 $$\n"));
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }), "ended with signal 9 (Killed)");
@@ -144,6 +151,8 @@ Mesh make_full_mesh() {
     mesh.position_indices = {0, 1, 2}, mesh.uv_indices = {0, 1, 1}, mesh.normal_indices = {0, 0, 0};
     mesh.tangents = {{1, 0, 0, 1}, {1, 0, 0, -1}, {0, 1, 0, 1}};
     mesh.creases = {{0, 2, 1.5f}};
+    mesh.uv_set = 1;
+    mesh.further_uvs = {{0, {{2, 3}}, {0, 0, 0}}, {5, {{0, 1}, {1, 1}}, {1, 0, kNoIndex}}};
     return mesh;
 }
 
@@ -164,7 +173,7 @@ TEST_F(ChildReader, a_block_holds_all_arrays) {
 }
 
 TEST_F(ChildReader, damaged_blocks_count_as_nothing) {
-    constexpr off_t kSizes = 16, kArrays = kSizes + 9 * 8;
+    constexpr off_t kSizes = 16, kArrays = kSizes + 12 * 8;
     const off_t face_sizes = kArrays + 3 * 12 + 2 * 8 + 12, positions = face_sizes + 4;
     const off_t uvs = positions + 12, normals = uvs + 12, creases = normals + 12 + 3 * 16;
     const auto read_damaged = [](off_t place, auto value) {
@@ -180,6 +189,10 @@ TEST_F(ChildReader, damaged_blocks_count_as_nothing) {
         EXPECT_EQ(read_damaged(place, uint32_t(0)), BlockContent::mesh) << place;
         EXPECT_EQ(read_damaged(place + 4, uint32_t(3)), BlockContent::nothing) << place;
     }
+    const off_t further = creases + 12 + 3 * 8 + 3 * 8;
+    EXPECT_EQ(read_damaged(further + 12, uint32_t(0)), BlockContent::mesh);
+    EXPECT_EQ(read_damaged(further + 12, uint32_t(2)), BlockContent::nothing) << "a uv of the other set";
+    EXPECT_EQ(read_damaged(creases + 12 + 12, uint32_t(2)), BlockContent::nothing) << "counts of uvs";
     EXPECT_EQ(read_damaged(0, uint32_t(0)), BlockContent::nothing) << "magic";
     EXPECT_EQ(read_damaged(8, uint32_t(17)), BlockContent::nothing) << "content";
     for (off_t size = kSizes; size < kArrays; size += 8)

@@ -144,10 +144,12 @@ TEST_F(InputTextures, are_refused_by_name_where_they_cannot_be) {
     const auto with_keys = [&](const std::string& keys) {
         return refuse(R"("coat_weight": {"file": "grey.exr", )" + keys + "}");
     };
-    EXPECT_EQ(
-        with_keys(R"("uv_set": 1)"),
-        "s.json: materials.m.coat_weight.uv_set: textures lie on the one uv set that their mesh is read "
-        "with (name it as uv_set of the mesh; a file that is two meshes can be read with two)");
+    EXPECT_HAS(with_keys(R"("uv_set": 256)"), "materials.m.coat_weight.uv_set: must be in [0, 255], not 256");
+    EXPECT_HAS(with_keys(R"("uv_set": -1)"), "coat_weight.uv_set: must be in [0, 255], not -1");
+    EXPECT_EQ(refuse(R"("geometry_normal": {"file": "n.1001.exr", "uv_set": 1})"),
+              "s.json: materials.m.geometry_normal.uv_set: directions of a normal map go by the uvs that the "
+              "mesh is read with (name its set as uv_set of the mesh, and the other one as that of the other "
+              "textures)");
     EXPECT_HAS(with_keys(R"("channel": "x")"), "coat_weight.channel: unknown channel 'x'");
     EXPECT_HAS(with_keys(R"("channel": "a")"), "no channel a: there are 1");
     EXPECT_HAS(with_keys(R"("color_space": "nope")"), "nope");

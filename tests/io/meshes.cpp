@@ -200,6 +200,23 @@ TEST_F(MeshFiles, fbx_keeps_quads_and_has_several_uv_sets) {
     EXPECT_HAS(message_of([&] { load_mesh(folder_ / "a.fbx", {.uv_set = 200}); }), "has no uv set 200");
 }
 
+TEST_F(MeshFiles, further_uv_sets_of_fbx_are_read_where_asked_for_in_a_child_too) {
+    write_fbx(folder_ / "a.fbx");
+    EXPECT_TRUE(load_mesh(folder_ / "a.fbx").further_uvs.empty());
+    for (const char* program : {"", RELIEF_BINARY}) {
+        MeshReadOptions options{.uv_set = 1, .further_uv_sets = {0, 1, 7}};
+        options.reader.program = program;
+        const Mesh mesh = load_mesh(folder_ / "a.fbx", options);
+        EXPECT_EQ(mesh.uv_set, 1);
+        EXPECT_EQ(mesh.uvs.at(mesh.uv_indices.at(2)), (Vec2f{0.5f, 0.5f}));
+        ASSERT_EQ(mesh.further_uvs.size(), 1u) << "of those that are there, each once";
+        EXPECT_EQ(mesh.further_uvs[0].number, 0);
+        ASSERT_EQ(mesh.further_uvs[0].indices.size(), 4u);
+        EXPECT_EQ(mesh.further_uvs[0].uvs.at(mesh.further_uvs[0].indices[2]), (Vec2f{1, 1}));
+        validate_mesh(mesh);
+    }
+}
+
 TEST_F(MeshFiles, missing_unknown_and_broken_files_are_named) {
     write("plane.obj", kQuadObj);
     const std::string missing = message_of([&] { load_mesh(folder_ / "plnae.obj"); });

@@ -152,6 +152,37 @@ TEST_F(GltfFiles, the_uv_set_is_chosen_and_v_grows_upwards) {
     validate_mesh(partly);
 }
 
+TEST_F(GltfFiles, further_uv_sets_are_read_where_asked_for) {
+    Document document = make_square();
+    GltfJson& attributes = primitive_of(document)["attributes"];
+    attributes["TEXCOORD_0"] = document.add_floats("VEC2", {0, 1, 1, 1, 1, 0, 0, 0});
+    attributes["TEXCOORD_1"] = document.add_floats("VEC2", {0, 0, 0.5f, 0, 0.5f, 0.5f, 0, 0.5f});
+    EXPECT_TRUE(parse(document).further_uvs.empty());
+    Mesh mesh = parse(document, {.further_uv_sets = {0, 1, 2}});
+    ASSERT_EQ(mesh.further_uvs.size(), 1u) << "neither the mesh's own nor one that is not there";
+    EXPECT_EQ(mesh.uv_set, 0);
+    EXPECT_EQ(mesh.further_uvs[0].number, 1);
+    const Mesh other = parse(document, {.uv_set = 1, .further_uv_sets = {0}});
+    EXPECT_EQ(other.uv_set, 1);
+    ASSERT_EQ(other.further_uvs.size(), 1u);
+    for (size_t corner = 0; corner < 6; ++corner) {
+        EXPECT_EQ(mesh.further_uvs[0].uvs.at(mesh.further_uvs[0].indices.at(corner)),
+                  other.uvs.at(other.uv_indices.at(corner)));
+        EXPECT_EQ(other.further_uvs[0].uvs.at(other.further_uvs[0].indices.at(corner)),
+                  mesh.uvs.at(mesh.uv_indices.at(corner)));
+    }
+    GltfJson bare = primitive_of(document);
+    bare["attributes"].erase("TEXCOORD_1");
+    document.json["meshes"][0]["primitives"].push_back(bare);
+    document.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"scale", {-1, 1, 1}}}};
+    mesh = parse(document, {.further_uv_sets = {1}});
+    const std::vector<uint32_t>& indices = mesh.further_uvs.at(0).indices;
+    ASSERT_EQ(indices.size(), 24u);
+    EXPECT_EQ(std::count(indices.begin() + 6, indices.begin() + 12, kNoIndex), 6);
+    EXPECT_EQ(indices[12], indices[2]) << "a mirror walks backwards";
+    validate_mesh(mesh);
+}
+
 TEST_F(GltfFiles, buffers_may_be_data_or_files_beside) {
     Document document = make_square();
     write("a b.bin", document.buffer);

@@ -83,6 +83,28 @@ TEST(Warnings, count_the_faces_without_uvs_and_name_the_first) {
     EXPECT_TRUE(prepare_scene(std::move(plain), {})->warnings.empty()) << "nothing reads uvs";
 }
 
+TEST(Warnings, count_the_faces_without_uvs_in_a_set_that_a_texture_names) {
+    Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
+    scene.displacements.clear(), scene.objects[0].displacement = kNoIndex;
+    scene.environment.emplace();
+    Mesh& mesh = scene.meshes[0];
+    mesh.further_uvs = {{3, mesh.uvs, mesh.uv_indices}};
+    for (size_t corner = 8; corner < 16; ++corner) mesh.further_uvs[0].indices[corner] = kNoIndex;
+    EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty()) << "nothing reads it";
+    scene.materials.emplace_back();
+    scene.objects[0].material = 0;
+    const auto texture = test::make_random_map(8, 8, 0.1f, 1);
+    scene.materials[0].textures = {
+        {.input = MaterialInput::roughness, .tiles = {{1001, texture}}, .uv_set = 3}};
+    const std::vector<std::string> warnings = prepare_scene(std::move(scene), {})->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(
+        warnings[0].find("2 of 24 faces have no uvs in set 3: textures on it are read at (0, 0) there; the "
+                         "first is face 2"),
+        std::string::npos)
+        << warnings[0];
+}
+
 TEST(Warnings, say_when_nothing_gives_light_or_is_there) {
     const auto prepare = [](const std::function<void(Scene&)>& change) {
         Scene scene = test::make_body_scene(test::make_torus(4, 6), {});

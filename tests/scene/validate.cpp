@@ -158,6 +158,36 @@ TEST(ValidateScene, refuses_normal_maps_without_uvs_or_with_too_few_channels) {
                "neither none, cubic nor bspline");
 }
 
+TEST(ValidateScene, uv_sets_of_textures_are_those_of_the_mesh) {
+    const auto put_on = [](int set, MaterialInput input = MaterialInput::roughness) {
+        return [=](Scene& scene) {
+            auto texture = std::make_shared<Texture>(*scene.displacements[0].tiles[0].texture);
+            scene.materials[0].name = "steel";
+            scene.materials[0].textures = {{.input = input, .tiles = {{1001, texture}}, .uv_set = set}};
+            scene.meshes[0].further_uvs = {{4, {{0, 0}}, {0, 0, 0, 0}}};
+        };
+    };
+    for (const int set : {kOwnUvSet, 0, 4}) EXPECT_EQ(complaint(put_on(set)), "accepted") << set;
+    EXPECT_HAS(complaint(put_on(2)),
+               "object 'thing': the specular_roughness of its material 'steel' lies on uv "
+               "set 2, and mesh 'quad' has uv sets 0 and 4 (sets count from 0");
+    EXPECT_HAS(complaint(put_on(256)),
+               "material 'steel', specular_roughness: uv_set is 256, not in [0, 255]");
+    EXPECT_HAS(complaint(put_on(-2)), "uv_set is -2");
+    EXPECT_HAS(complaint(put_on(4, MaterialInput::normal)), "a normal map cannot have a uv_set");
+    const auto with_sets = [](std::vector<UvSet> sets) {
+        return [=](Scene& scene) { scene.meshes[0].further_uvs = sets; };
+    };
+    EXPECT_HAS(complaint(with_sets({{0, {{0, 0}}, {0, 0, 0, 0}}})),
+               "mesh 'quad', uv set 0: there are two sets of this number");
+    EXPECT_HAS(complaint(with_sets({{300, {{0, 0}}, {0, 0, 0, 0}}})), "uv set 300: the number is not in");
+    EXPECT_HAS(complaint(with_sets({{1, {{0, 0}}, {0, 0, 0}}})), "uv set 1: has 3 uv indices for 4 corners");
+    EXPECT_HAS(complaint(with_sets({{1, {{0, 0}}, {0, 0, 1, 0}}})), "uv index 1 of corner 2 is out of range");
+    EXPECT_HAS(complaint(with_sets({{1, {{0, kNan}}, {0, 0, 0, 0}}})), "uv set 1: uv 0 is not finite");
+    EXPECT_HAS(complaint([](Scene& scene) { scene.meshes[0].uv_set = -1; }),
+               "the number of its uv set is -1");
+}
+
 TEST(ValidateScene, refuses_anisotropy_without_uvs_or_with_too_many_textures) {
     const auto without_uvs = [](const auto& change) {
         return complaint([&](Scene& s) {

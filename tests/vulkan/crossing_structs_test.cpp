@@ -28,12 +28,12 @@ namespace {
 
 static_assert(sizeof(scalar::InstanceData) == 33 * 4);
 static_assert(sizeof(scalar::InstanceData) * 1000000 <= 1 << 27, "one buffer holds a million instances");
-static_assert(sizeof(scalar::SurfaceData) == 15 * 4);
+static_assert(sizeof(scalar::SurfaceData) == 16 * 4);
 static_assert(sizeof(scalar::MapData) == 18 * 4);
 static_assert(sizeof(scalar::TextureData) == 5 * 4);
 static_assert(sizeof(scalar::MaterialData) == 63 * 4);
 static_assert(sizeof(scalar::MaterialInputData) == 64 * 4);
-static_assert(sizeof(scalar::InputTextureData) == 11 * 4);
+static_assert(sizeof(scalar::InputTextureData) == 12 * 4);
 static_assert(sizeof(scalar::TileRecord) == 5 * 4);
 static_assert(sizeof(scalar::RayData) == 9 * 4);
 static_assert(sizeof(scalar::HitData) == 7 * 4);

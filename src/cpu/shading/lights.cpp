@@ -140,12 +140,14 @@ void LightSet::draw_emitter(const Receiver& at, uint32_t emitter, const Vec2f& u
     const PreparedScene& scene = tracer_.scene();
     const Instance& instance = scene.instances[range.instance];
     const uint32_t quad = emitter - range.first;
-    const bool is_triangle = scene.surfaces[instance.surface].quads[quad].is_triangle();
+    const Surface& surface = scene.surfaces[instance.surface];
+    const bool is_triangle = surface.quads[quad].is_triangle();
     const Vec2f uv = is_triangle ? scalar::square_to_triangle(u) : u;
     const SurfacePoint point = tracer_.evaluate_point(range.instance, quad, uv, at.lod_bias);
     const float pdf = emitter_density(emitter, at.position, point);
-    static_cast<scalar::LightDraw&>(drawn) = scalar::draw_emitter(
-        find_emission(scene, instance.material, point.uv), point.position - at.position, pdf);
+    static_cast<scalar::LightDraw&>(drawn) =
+        scalar::draw_emitter(find_emission(scene, instance.material, {surface, quad, uv, point.uv}),
+                             point.position - at.position, pdf);
     drawn.emitter = point;
     const std::vector<uint32_t>& groups = scene.light_groups.of_material;
     if (!groups.empty()) drawn.group = groups[instance.material];

@@ -11,7 +11,8 @@ namespace relief::cpu {
 namespace {
 
 /// Nothing where a tile lacks.
-std::optional<Vec3f> fetch_placed(const PlacedTexture& texture, const Vec2f& uv) {
+std::optional<Vec3f> fetch_placed(const PlacedTexture& texture, const TexturePlace& place) {
+    const Vec2f uv = place.find_uv(texture.uv_set);
     Vec2f at{uv.x * texture.uv_scale.x + texture.uv_offset.x,
              uv.y * texture.uv_scale.y + texture.uv_offset.y};
     uint32_t tile = 0;
@@ -31,40 +32,41 @@ std::optional<Vec3f> fetch_placed(const PlacedTexture& texture, const Vec2f& uv)
 } // namespace
 
 scalar::InputNumbers find_inputs(const TexturedMaterial& material, const scalar::InputNumbers& numbers,
-                                 const Vec2f& uv) {
+                                 const TexturePlace& place) {
     scalar::InputNumbers result = numbers;
     for (const PlacedTexture& texture : material.textures)
-        if (const std::optional<Vec3f> value = fetch_placed(texture, uv))
+        if (const std::optional<Vec3f> value = fetch_placed(texture, place))
             result = scalar::apply_input(result, texture.place.first, texture.place.count, *value);
     return scalar::limit_inputs(result);
 }
 
-Vec3f find_emission(const PreparedScene& scene, uint32_t material, const Vec2f& uv) {
+Vec3f find_emission(const PreparedScene& scene, uint32_t material, const TexturePlace& place) {
     const TexturedMaterial* textured = scene.textured.find(material);
     if (!textured) return scene.materials[material].emission;
-    return scalar::get_input_color(find_inputs(*textured, textured->numbers, uv), scalar::kInputEmission);
+    return scalar::get_input_color(find_inputs(*textured, textured->numbers, place), scalar::kInputEmission);
 }
 
-WallNumbers find_wall_numbers(const PreparedScene& scene, uint32_t material, const Vec2f& uv) {
+WallNumbers find_wall_numbers(const PreparedScene& scene, uint32_t material, const TexturePlace& place) {
     const Material& numbers = scene.materials[material];
     const scalar::GlassParameters* glass = scene.glass.find(material);
-    WallNumbers result{find_opacity(numbers, uv), 0, {}};
-    if (glass) result.metallic = find_metallic(numbers, uv), result.glass = *glass;
+    WallNumbers result{find_opacity(numbers, place.uv), 0, {}};
+    if (glass) result.metallic = find_metallic(numbers, place.uv), result.glass = *glass;
     const TexturedMaterial* textured = scene.textured.find(material);
     if (!textured) return result;
     scalar::InputNumbers start = textured->numbers;
     start.word[scalar::kInputOpacity] = result.opacity, start.word[scalar::kInputMetallic] = result.metallic;
-    const scalar::InputNumbers found = find_inputs(*textured, start, uv);
+    const scalar::InputNumbers found = find_inputs(*textured, start, place);
     result.opacity = found.word[scalar::kInputOpacity], result.metallic = found.word[scalar::kInputMetallic];
     if (glass) result.glass = scalar::set_glass_inputs(*glass, found, textured->constants);
     return result;
 }
 
-Vec3f find_normal_texel(const PreparedScene& scene, uint32_t material, const Vec2f& uv) {
+Vec3f find_normal_texel(const PreparedScene& scene, uint32_t material, const TexturePlace& place) {
     const Material& numbers = scene.materials[material];
-    if (numbers.normal_texture) return fetch_texture(*numbers.normal_texture, numbers.normal_filter, uv);
+    if (numbers.normal_texture)
+        return fetch_texture(*numbers.normal_texture, numbers.normal_filter, place.uv);
     const TexturedMaterial* textured = scene.textured.find(material);
-    return scalar::get_input_color(find_inputs(*textured, textured->numbers, uv), scalar::kInputNormal);
+    return scalar::get_input_color(find_inputs(*textured, textured->numbers, place), scalar::kInputNormal);
 }
 
 } // namespace relief::cpu

@@ -26,7 +26,7 @@ Vec3f map_shading_normal(const PreparedScene& scene, const Instance& instance, c
                          const SurfacePoint& point) {
     const Surface& surface = scene.surfaces[instance.surface];
     const Material& material = scene.materials[instance.material];
-    const Vec3f texel = find_normal_texel(scene, instance.material, point.uv);
+    const Vec3f texel = find_normal_texel(scene, instance.material, place_hit(scene, hit, point.uv));
     const float scale = material.normal_scale;
     const Vec3f direction =
         scalar::decode_normal({texel.x, texel.y, texel.z}, {scale, material.normal_flip_y ? -scale : scale});

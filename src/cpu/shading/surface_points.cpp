@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "cpu/shading/texture_place.h"
 #include "formulas/cell_place.h"
 #include "formulas/local_start.h"
 #include "formulas/mips.h"
-#include "formulas/surface_point.h"
 
 namespace relief::cpu {
 
@@ -44,9 +44,7 @@ Vec2f interpolate_uv(const Surface& surface, uint32_t patch, float u, float v) {
     if (surface.uvs.empty()) return {};
     const Quad quad = surface.quads[patch];
     const auto uv = [&](size_t k) { return surface.uvs[quad.vertex[k]]; };
-    return surface.has_displacement || surface.has_bilinear_uvs
-               ? scalar::blend_patch_uv(uv(0), uv(1), uv(2), uv(3), {u, v})
-               : scalar::blend_polygon_uv(uv(0), uv(1), uv(2), uv(3), {u, v});
+    return blend_corner_uvs(surface, {uv(0), uv(1), uv(2), uv(3)}, {u, v});
 }
 
 /// Hits of one key are on polygons of a surface, or on patches that read one image: one SIMD call.

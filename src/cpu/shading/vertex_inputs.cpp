@@ -26,8 +26,8 @@ LayerView VertexInputs::layers() const {
     return {records.data(), entries.data(), uint32_t(entries.size())};
 }
 
-void VertexInputs::set_textured(size_t n, uint32_t instance, const Vec2f& uv, PointMaterial& material) {
-    const TexturedMaterial* textured = scene_.textured.find(scene_.instances[instance].material);
+void VertexInputs::set_textured(size_t n, const TraceHit& hit, const Vec2f& uv, PointMaterial& material) {
+    const TexturedMaterial* textured = scene_.textured.find(scene_.instances[hit.instance].material);
     if (!textured) return;
     scalar::InputNumbers numbers = textured->numbers;
     numbers.word[scalar::kInputBaseColor] = material.base_color.x;
@@ -35,7 +35,7 @@ void VertexInputs::set_textured(size_t n, uint32_t instance, const Vec2f& uv, Po
     numbers.word[scalar::kInputBaseColor + 2] = material.base_color.z;
     numbers.word[scalar::kInputRoughness] = material.roughness;
     numbers.word[scalar::kInputMetallic] = material.metallic;
-    numbers = find_inputs(*textured, numbers, uv);
+    numbers = find_inputs(*textured, numbers, place_hit(scene_, hit, uv));
     material.base_color = scalar::get_input_color(numbers, scalar::kInputBaseColor);
     material.roughness = numbers.word[scalar::kInputRoughness];
     material.metallic = numbers.word[scalar::kInputMetallic];

@@ -14,9 +14,10 @@ class VertexInputs {
     /// For up to `vertex_count` vertices at once. Copies the scene's tables, if some inputs have textures.
     VertexInputs(const PreparedScene& scene, size_t vertex_count);
 
-    /// Changes the material of vertex `n` to what the textures make of it at uv, if it has some.
-    void set(size_t n, uint32_t instance, const Vec2f& uv, PointMaterial& material) {
-        if (!scene_.textured.empty()) set_textured(n, instance, uv, material);
+    /// Changes the material of vertex `n` to what the textures make of it at a hit, whose uv in the mesh's
+    /// own set is given, if it has some.
+    void set(size_t n, const TraceHit& hit, const Vec2f& uv, PointMaterial& material) {
+        if (!scene_.textured.empty()) set_textured(n, hit, uv, material);
     }
 
     LayerView layers() const;
@@ -28,7 +29,7 @@ class VertexInputs {
 
   private:
     const std::vector<scalar::GlassParameters>& records() const { return scene_.glass.records; }
-    void set_textured(size_t n, uint32_t instance, const Vec2f& uv, PointMaterial& material);
+    void set_textured(size_t n, const TraceHit& hit, const Vec2f& uv, PointMaterial& material);
 
     const PreparedScene& scene_;
     bool has_layers_ = false, has_glass_ = false; ///< of vertices

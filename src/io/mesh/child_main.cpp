@@ -57,10 +57,26 @@ void set_limits(int64_t memory_bytes, int64_t stack_bytes) {
 #endif
 }
 
+/// kReadMeshWord tells of the form.
+std::optional<MeshReadOptions> parse_uv_sets(std::string_view words) {
+    MeshReadOptions options;
+    for (bool is_first = true;; is_first = false) {
+        const size_t end = std::min(words.find(','), words.size());
+        const auto number = parse_number(words.substr(0, end));
+        if (!number || *number > kMaxUvSet) return {};
+        if (is_first)
+            options.uv_set = int(*number);
+        else
+            options.further_uv_sets.push_back(int(*number));
+        if (end == words.size()) return options;
+        words.remove_prefix(end + 1);
+    }
+}
+
 /// Leaves the mesh, or why there is none, in the shared memory.
-void leave_mesh(const char* file, int uv_set) {
+void leave_mesh(const char* file, const MeshReadOptions& options) {
     try {
-        write_mesh_block(kSharedMemory, load_mesh(file, {.uv_set = uv_set}));
+        write_mesh_block(kSharedMemory, load_mesh(file, options));
     } catch (const std::bad_alloc&) {
         write_memory_block(kSharedMemory);
     } catch (const Error& error) {
@@ -76,14 +92,15 @@ void leave_mesh(const char* file, int uv_set) {
 
 std::optional<int> run_mesh_reader(int argument_count, const char* const* arguments) {
     if (argument_count != 7 || std::strcmp(arguments[1], kReadMeshWord) != 0) return {};
-    const auto uv_set = parse_number(arguments[3]), memory = parse_number(arguments[4]);
-    const auto stack = parse_number(arguments[5]), parent = parse_number(arguments[6]);
-    if (!uv_set || !memory || !stack || !parent) return kNoTask;
+    const auto options = parse_uv_sets(arguments[3]);
+    const auto memory = parse_number(arguments[4]), stack = parse_number(arguments[5]);
+    const auto parent = parse_number(arguments[6]);
+    if (!options || !memory || !stack || !parent) return kNoTask;
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != *parent) return kNoTask; // it has ended already
     set_limits(*memory, *stack);
     try {
-        leave_mesh(arguments[2], int(*uv_set));
+        leave_mesh(arguments[2], *options);
     } catch (const std::exception&) {
         return kNoTask;
     }

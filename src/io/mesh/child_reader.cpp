@@ -177,6 +177,12 @@ Mesh take_mesh(const std::filesystem::path& file, int status, MeshBlock block, u
     report_failure(file, fmt::format("ended without a mesh (exit {})", WEXITSTATUS(status)));
 }
 
+std::string list_uv_sets(const MeshReadOptions& options) {
+    std::string list = std::to_string(options.uv_set);
+    for (const int number : options.further_uv_sets) list += "," + std::to_string(number);
+    return list;
+}
+
 } // namespace
 
 Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions& options) {
@@ -186,7 +192,7 @@ Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions
     const std::vector<std::string> words = {settings.program.filename().string(),
                                             kReadMeshWord,
                                             file.string(),
-                                            std::to_string(options.uv_set),
+                                            list_uv_sets(options),
                                             std::to_string(memory_limit),
                                             std::to_string(std::min(settings.stack_bytes, kMostBytes)),
                                             std::to_string(getpid())};

@@ -18,7 +18,8 @@ Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions
 /// The descriptor by which the child gets the shared memory.
 inline constexpr int kSharedMemory = 3;
 
-/// First word after the child's name, before file, uv set, bytes of memory and stack, and the parent's id.
+/// First word after the child's name, before file, uv sets ("0" or "0,1,2": that of the mesh first), bytes of
+/// memory and stack, and the parent's id.
 inline constexpr const char* kReadMeshWord = "--read-mesh";
 
 } // namespace relief

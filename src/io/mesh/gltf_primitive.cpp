@@ -123,7 +123,8 @@ MorphedPrimitive::MorphedPrimitive(const GltfPrimitive& part, const std::vector<
     part_.positions = positions_, part_.normals = normals_, part_.tangents = tangents_;
 }
 
-GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set) {
+GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set,
+                                  std::span<const int> further_sets) {
     GltfPrimitive part;
     const auto mode_node = primitive.find("mode");
     const int64_t mode = mode_node ? mode_node->as_integer(0, kFan) : kTriangles;
@@ -143,6 +144,7 @@ GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int
     part.normals = read("NORMAL", 3);
     part.tangents = read("TANGENT", 4);
     part.uvs = read(fmt::format("TEXCOORD_{}", uv_set), 2);
+    for (const int set : further_sets) part.further_uvs.push_back(read(fmt::format("TEXCOORD_{}", set), 2));
     part.uv_set_count = count_uv_sets(attributes);
     read_faces(file, primitive, mode, part);
     return part;

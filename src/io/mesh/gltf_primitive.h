@@ -13,9 +13,10 @@ inline constexpr const char* kDamagedHint = "the file is damaged: export it agai
 
 struct GltfPrimitive {
     // Values of the vertices one after another, kept by the file; empty where the part has none of the kind.
-    std::span<const float> positions, normals; ///< 3 a vertex
-    std::span<const float> uvs;                ///< 2 a vertex, v downwards
-    std::span<const float> tangents;           ///< 4 a vertex
+    std::span<const float> positions, normals;       ///< 3 a vertex
+    std::span<const float> uvs;                      ///< 2 a vertex, v downwards
+    std::vector<std::span<const float>> further_uvs; ///< the same of each further set that is asked for
+    std::span<const float> tangents;                 ///< 4 a vertex
     /// What a morph target adds to each vertex, 3 numbers a vertex; empty where it adds nothing.
     struct Target {
         std::span<const float> positions, normals, tangents;
@@ -25,8 +26,10 @@ struct GltfPrimitive {
     size_t uv_set_count = 0; ///< TEXCOORD_0 and so on that the part has
 };
 
-/// Points and lines have no faces; targets are left out. Throws bad_input.
-GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set);
+/// Points and lines have no faces; targets are left out. `further_sets`: numbers of uv sets. Throws
+/// bad_input.
+GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set,
+                                  std::span<const int> further_sets);
 
 /// Adds the morph targets to a part. Throws bad_input.
 void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part);

@@ -8,6 +8,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "io/mesh/further_uvs.h"
 #include "io/mesh/welder.h"
 #include "relief/error.h"
 
@@ -21,6 +22,7 @@ class AssimpBuilder {
         : scene_(scene),
           file_(std::move(file)),
           uv_set_(unsigned(options.uv_set)),
+          further_(options),
           positions_(mesh_.positions),
           uvs_(mesh_.uvs),
           normals_(mesh_.normals) {}
@@ -36,6 +38,8 @@ class AssimpBuilder {
             fail(fmt::format("has no uv set {}", uv_set_), "sets are counted from 0");
         add_node(*scene_.mRootNode, aiMatrix4x4());
         if (mesh_.uvs.empty()) mesh_.uv_indices.clear(); // no node has a part with uvs
+        mesh_.uv_set = int(uv_set_);
+        mesh_.further_uvs = further_.take();
         return std::move(mesh_);
     }
 
@@ -81,6 +85,14 @@ class AssimpBuilder {
         } else if (with_uv_ > 0) {
             mesh_.uv_indices.push_back(kNoIndex);
         }
+        for (size_t n = 0; n < further_.numbers().size(); ++n) {
+            const auto set = unsigned(further_.numbers()[n]);
+            if (mesh.HasTextureCoords(set))
+                further_.add_corner(n,
+                                    {mesh.mTextureCoords[set][corner].x, mesh.mTextureCoords[set][corner].y});
+            else
+                further_.add_corner_without(n);
+        }
         if (has_normals_) {
             const aiVector3D n = normal_matrix * mesh.mNormals[corner];
             mesh_.normal_indices.push_back(normals_.add({n.x, n.y, n.z}));
@@ -90,6 +102,7 @@ class AssimpBuilder {
     const aiScene& scene_;
     std::string file_;
     unsigned uv_set_;
+    FurtherUvs further_;
     Mesh mesh_;
     PointWelder positions_;
     UvWelder uvs_;

@@ -15,8 +15,8 @@ namespace relief {
 
 namespace {
 
-constexpr std::array<char, 8> kBlockMagic = {'r', 'e', 'l', 'i', 'e', 'f', 'M', '1'};
-constexpr size_t kArrays = 9;
+constexpr std::array<char, 8> kBlockMagic = {'r', 'e', 'l', 'i', 'e', 'f', 'M', '2'};
+constexpr size_t kArrays = 12;
 
 /// The sizes are those of the arrays of a mesh, or of the three texts of an error.
 struct Header {
@@ -26,12 +26,53 @@ struct Header {
     std::array<uint64_t, kArrays> sizes{};
 };
 
+/// Numbers of uv sets, that of the mesh first, and further ones behind one another.
+struct UvSets {
+    struct Entry {
+        int32_t number = 0;
+        uint32_t uv_count = 0; ///< of a further one
+    };
+    std::vector<Entry> entries;
+    std::vector<Vec2f> uvs;
+    std::vector<uint32_t> indices; ///< one a corner of each
+};
+
+UvSets join_uv_sets(const Mesh& mesh) {
+    UvSets sets;
+    sets.entries.push_back({mesh.uv_set, 0});
+    for (const UvSet& set : mesh.further_uvs) {
+        sets.entries.push_back({set.number, uint32_t(set.uvs.size())});
+        sets.uvs.insert(sets.uvs.end(), set.uvs.begin(), set.uvs.end());
+        sets.indices.insert(sets.indices.end(), set.indices.begin(), set.indices.end());
+    }
+    return sets;
+}
+
+/// False where the counts are not those of the mesh.
+bool part_uv_sets(const UvSets& sets, Mesh& mesh) {
+    const size_t corners = mesh.position_indices.size();
+    if (sets.entries.empty() || sets.indices.size() != (sets.entries.size() - 1) * corners) return false;
+    mesh.uv_set = sets.entries[0].number;
+    auto uv = sets.uvs.begin();
+    auto index = sets.indices.begin();
+    for (size_t k = 1; k < sets.entries.size(); ++k) {
+        const auto [number, count] = sets.entries[k];
+        if (count > size_t(sets.uvs.end() - uv)) return false;
+        mesh.further_uvs.push_back(
+            {number, {uv, uv + ptrdiff_t(count)}, {index, index + ptrdiff_t(corners)}});
+        uv += ptrdiff_t(count), index += ptrdiff_t(corners);
+    }
+    return uv == sets.uvs.end();
+}
+
 /// Calls `visit(array, place)` for all arrays, in the order of the block.
-template <class AnyMesh, class Visit> void visit_arrays(AnyMesh& mesh, const Visit& visit) {
+template <class AnyMesh, class AnySets, class Visit>
+void visit_arrays(AnyMesh& mesh, AnySets& sets, const Visit& visit) {
     visit(mesh.positions, 0), visit(mesh.uvs, 1), visit(mesh.normals, 2);
     visit(mesh.face_sizes, 3);
     visit(mesh.position_indices, 4), visit(mesh.uv_indices, 5), visit(mesh.normal_indices, 6);
     visit(mesh.tangents, 7), visit(mesh.creases, 8);
+    visit(sets.entries, 9), visit(sets.uvs, 10), visit(sets.indices, 11);
 }
 
 /// Reads and writes one after the other, from the start of the file.
@@ -87,10 +128,9 @@ bool has_good_indices(const std::vector<uint32_t>& indices, uint64_t corners, si
 }
 
 /// As has_good_indices, with kNoIndex for corners of faces without uvs.
-bool has_good_uv_indices(const Mesh& mesh, uint64_t corners) {
-    return mesh.uv_indices.size() == corners && std::ranges::all_of(mesh.uv_indices, [&](uint32_t index) {
-               return index == kNoIndex || index < mesh.uvs.size();
-           });
+bool has_good_uv_indices(const std::vector<uint32_t>& indices, uint64_t corners, size_t count) {
+    return indices.size() == corners &&
+           std::ranges::all_of(indices, [&](uint32_t index) { return index == kNoIndex || index < count; });
 }
 
 /// Whether all of the mesh can be walked by its indices; whether its values make sense is asked later.
@@ -101,7 +141,10 @@ bool is_consistent(const Mesh& mesh) {
         corners += size;
     }
     if (!has_good_indices(mesh.position_indices, corners, mesh.positions.size())) return false;
-    if (!mesh.uv_indices.empty() && !has_good_uv_indices(mesh, corners)) return false;
+    if (!mesh.uv_indices.empty() && !has_good_uv_indices(mesh.uv_indices, corners, mesh.uvs.size()))
+        return false;
+    for (const UvSet& set : mesh.further_uvs)
+        if (!has_good_uv_indices(set.indices, corners, set.uvs.size())) return false;
     if (!mesh.normal_indices.empty() && !has_good_indices(mesh.normal_indices, corners, mesh.normals.size()))
         return false;
     if (!mesh.tangents.empty() && mesh.tangents.size() != corners) return false;
@@ -112,10 +155,11 @@ bool is_consistent(const Mesh& mesh) {
 
 bool read_mesh(Cursor& cursor, const Header& header, uint64_t left, Mesh& mesh) {
     bool is_whole = true;
-    visit_arrays(mesh, [&](auto& array, size_t place) {
+    UvSets sets;
+    visit_arrays(mesh, sets, [&](auto& array, size_t place) {
         is_whole = is_whole && read_array(cursor, header.sizes[place], left, array);
     });
-    return is_whole && left == 0 && is_consistent(mesh);
+    return is_whole && left == 0 && part_uv_sets(sets, mesh) && is_consistent(mesh);
 }
 
 bool read_error(Cursor& cursor, const Header& header, uint64_t left, MeshBlock& block) {
@@ -141,9 +185,10 @@ void write_mesh_block(int descriptor, const Mesh& mesh) {
     Header header;
     header.content = uint32_t(BlockContent::mesh);
     Cursor cursor(descriptor);
-    visit_arrays(mesh, [&](const auto& array, size_t place) { header.sizes[place] = array.size(); });
+    const UvSets sets = join_uv_sets(mesh);
+    visit_arrays(mesh, sets, [&](const auto& array, size_t place) { header.sizes[place] = array.size(); });
     cursor.write(&header, sizeof header);
-    visit_arrays(mesh, [&](const auto& array, size_t) { write_array(cursor, array); });
+    visit_arrays(mesh, sets, [&](const auto& array, size_t) { write_array(cursor, array); });
     Cursor(descriptor).write(kBlockMagic.data(), kBlockMagic.size());
 }
 

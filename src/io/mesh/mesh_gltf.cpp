@@ -11,6 +11,7 @@
 
 #include "formulas/basis.h"
 #include "io/foreign_files.h"
+#include "io/mesh/further_uvs.h"
 #include "io/mesh/gltf_animation.h"
 #include "io/mesh/gltf_primitive.h"
 #include "io/mesh/welder.h"
@@ -111,6 +112,7 @@ class GltfBuilder {
         : file_(file),
           name_(name),
           uv_set_(options.uv_set),
+          further_(options),
           nodes_(file.list("nodes")),
           meshes_(file.list("meshes")),
           positions_(mesh_.positions),
@@ -132,6 +134,8 @@ class GltfBuilder {
         for (const Instance& instance : instances_)
             for (const GltfPrimitive& part : parts_.at(instance.mesh))
                 add_part(MorphedPrimitive(part, instance.weights).get(), instance.world_from_node);
+        mesh_.uv_set = uv_set_;
+        mesh_.further_uvs = further_.take();
         return std::move(mesh_);
     }
 
@@ -246,7 +250,7 @@ class GltfBuilder {
         const auto [found, is_new] = parts_.try_emplace(&mesh);
         if (!is_new) return;
         for (const JsonNode& primitive : mesh.get("primitives").elements()) {
-            GltfPrimitive part = read_gltf_primitive(file_, primitive, uv_set_);
+            GltfPrimitive part = read_gltf_primitive(file_, primitive, uv_set_, further_.numbers());
             if (part.face_sizes.empty()) continue;
             if (targets == Targets::read) read_gltf_targets(file_, primitive, part);
             with_uv_ += part.uvs.empty() ? 0 : 1;
@@ -284,6 +288,7 @@ class GltfBuilder {
                 Corner& corner = corners_[vertex];
                 if (corner.copy != copy_count_) corner = weld(part, vertex, world_from_node, vectors);
                 add_corner(corner);
+                add_further_uvs(part, vertex);
             }
             mesh_.face_sizes.push_back(size);
             begin += size;
@@ -295,6 +300,16 @@ class GltfBuilder {
         if (with_uv_ > 0) mesh_.uv_indices.push_back(corner.uv);
         if (has_normals_) mesh_.normal_indices.push_back(corner.normal);
         if (has_tangents_) mesh_.tangents.push_back(corner.tangent);
+    }
+
+    void add_further_uvs(const GltfPrimitive& part, uint32_t vertex) {
+        for (size_t n = 0; n < part.further_uvs.size(); ++n) {
+            const std::span<const float> uvs = part.further_uvs[n];
+            if (uvs.empty())
+                further_.add_corner_without(n);
+            else
+                further_.add_corner(n, {uvs[2 * vertex], 1 - uvs[2 * vertex + 1]}); // v from the top
+        }
     }
 
     Corner weld(const GltfPrimitive& part, size_t vertex, const Affine& world_from_node,
@@ -323,6 +338,7 @@ class GltfBuilder {
     GltfFile& file_;
     const std::string& name_;
     int uv_set_;
+    FurtherUvs further_;
     std::vector<JsonNode> nodes_, meshes_;
     Mesh mesh_;
     PointWelder positions_, normals_;

@@ -107,9 +107,10 @@ class AssetCache {
     using TextureKey = std::tuple<std::string, TextureUse, uint32_t, std::string>;
     SceneAssets given_;
     std::map<TextureKey, Kept<Texture>> textures_;
-    using MeshKey = std::tuple<std::string, int, std::string, double>;
+    using MeshKey = std::tuple<std::string, int, std::vector<int>, std::string, double>;
     MeshKey make_key(const std::string& file, const MeshReadOptions& options) const {
-        return {resolve(file).string(), options.uv_set, options.animation, options.time};
+        return {resolve(file).string(), options.uv_set, options.further_uv_sets, options.animation,
+                options.time};
     }
     std::map<MeshKey, Kept<Mesh>> meshes_;
     std::map<std::string, SequenceFiles> sequences_;

@@ -66,6 +66,14 @@ void require_same_count(const Mesh& a, const Mesh& b, const char* what, List Mes
         refuse(a.source, b.source, fmt::format("{} and {} {}", first, second, what), kMeshHint);
 }
 
+void require_same_sets(const Mesh& a, const Mesh& b) {
+    const auto is_same = [](const UvSet& x, const UvSet& y) {
+        return x.number == y.number && x.uvs.size() == y.uvs.size() && x.indices == y.indices;
+    };
+    if (!std::ranges::equal(a.further_uvs, b.further_uvs, is_same))
+        refuse(a.source, b.source, "other uvs in the sets that textures lie on", kMeshHint);
+}
+
 template <class Value>
 void blend_list(std::vector<Value>& values, const std::vector<Value>& others, float weight) {
     for (size_t k = 0; k < values.size(); ++k) values[k] = blend(values[k], others[k], weight);
@@ -118,12 +126,15 @@ Mesh blend_meshes(const Mesh& a, const Mesh& b, double weight) {
     require_same(a, b, "corners of faces", &Mesh::position_indices);
     require_same_count(a, b, "uvs", &Mesh::uvs);
     require_same(a, b, "uvs of corners", &Mesh::uv_indices);
+    require_same_sets(a, b);
     require_same_count(a, b, "normals of corners", &Mesh::normal_indices);
     require_same_count(a, b, "tangents", &Mesh::tangents);
     const auto w = float(weight);
     Mesh mesh = a;
     blend_list(mesh.positions, b.positions, w);
     blend_list(mesh.uvs, b.uvs, w);
+    for (size_t k = 0; k < mesh.further_uvs.size(); ++k)
+        blend_list(mesh.further_uvs[k].uvs, b.further_uvs[k].uvs, w);
     blend_normals(mesh, b, w);
     for (size_t k = 0; k < mesh.tangents.size(); ++k)
         for (size_t c = 0; c < 3; ++c) mesh.tangents[k][c] = blend(mesh.tangents[k][c], b.tangents[k][c], w);

@@ -13,9 +13,9 @@ namespace relief {
 /// where size, channels or kind of samples differ.
 std::shared_ptr<const Texture> blend_textures(const Texture& a, const Texture& b, double weight);
 
-/// The same of positions, uvs, normals and tangents; the rest is that of `a`. Normals may be indexed in
-/// another way in each, as exporters merge those that are equal. Throws bad_input where the faces or what
-/// belongs to them differ.
+/// The same of positions, uvs of all sets, normals and tangents; the rest is that of `a`. Normals may be
+/// indexed in another way in each, as exporters merge those that are equal. Throws bad_input where the faces
+/// or what belongs to them differ.
 Mesh blend_meshes(const Mesh& a, const Mesh& b, double weight);
 
 } // namespace relief

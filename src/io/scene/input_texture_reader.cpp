@@ -29,9 +29,9 @@ Vec2f read_pair(const JsonNode& node) {
 }
 
 void check_texture_keys(const JsonNode& node, const MaterialInputKind& kind, bool is_own_key) {
-    if (const auto uv_set = node.find("uv_set"))
-        uv_set->fail("textures lie on the one uv set that their mesh is read with",
-                     "name it as uv_set of the mesh; a file that is two meshes can be read with two");
+    if (const auto uv_set = node.find("uv_set"); uv_set && kind.input == MaterialInput::normal)
+        uv_set->fail("directions of a normal map go by the uvs that the mesh is read with",
+                     "name its set as uv_set of the mesh, and the other one as that of the other textures");
     if (kind.input == MaterialInput::normal)
         node.check_keys(scene_keys::kNormalTexture);
     else if (!is_own_key)
@@ -45,6 +45,7 @@ void check_texture_keys(const JsonNode& node, const MaterialInputKind& kind, boo
 void read_place(const JsonNode& node, InputTexture& texture) {
     if (const auto scale = node.find("uv_scale")) texture.uv_scale = read_pair(*scale);
     if (const auto offset = node.find("uv_offset")) texture.uv_offset = read_pair(*offset);
+    if (const auto uv_set = node.find("uv_set")) texture.uv_set = int(uv_set->as_integer(0, kMaxUvSet));
     const auto wrap = node.find("wrap");
     if (!wrap) return;
     if (texture.is_udim) wrap->fail("each of several tiles ends with its own texels", "leave wrap out");
@@ -107,7 +108,8 @@ bool is_placed_texture(const JsonNode& texture) {
     if (!texture.is_object()) return false;
     const auto file = texture.find("file");
     if (file && file->is_string() && has_tile_token(file->as_string())) return true;
-    return texture.find("wrap") || texture.find("uv_scale") || texture.find("uv_offset");
+    return texture.find("wrap") || texture.find("uv_scale") || texture.find("uv_offset") ||
+           texture.find("uv_set");
 }
 
 void refuse_input_textures(const JsonNode& node) {

@@ -12,6 +12,10 @@ uint64_t hash_mesh(const Mesh& mesh) {
     hash.add(mesh.positions), hash.add(mesh.uvs), hash.add(mesh.normals), hash.add(mesh.face_sizes);
     hash.add(mesh.position_indices), hash.add(mesh.uv_indices), hash.add(mesh.normal_indices);
     hash.add(mesh.tangents), hash.add(mesh.creases);
+    for (const UvSet& set : mesh.further_uvs) {
+        hash.add(std::array{uint32_t(set.number)});
+        hash.add(set.uvs), hash.add(set.indices);
+    }
     const Subdivision& subdivision = mesh.subdivision;
     if (subdivision.scheme != SubdivisionScheme::none)
         hash.add(std::array{uint32_t(subdivision.scheme), uint32_t(subdivision.level),

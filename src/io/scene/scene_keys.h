@@ -33,13 +33,13 @@ inline constexpr auto kMaterialLacks =
               "transmission_dispersion_scale", "transmission_dispersion_abbe_number", "thin_film_weight",
               "thin_film_thickness", "thin_film_ior", "geometry_tangent", "geometry_coat_normal",
               "geometry_coat_tangent");
-inline constexpr auto kColourTexture = make_keys("file", "filter", "color_space");
-inline constexpr auto kDataTexture = make_keys("file", "filter", "channel");
+inline constexpr auto kColourTexture = make_keys("file", "filter", "color_space", "uv_set");
+inline constexpr auto kDataTexture = make_keys("file", "filter", "channel", "uv_set");
 inline constexpr auto kNormalTexture =
     make_keys("file", "filter", "scale", "flip_y", "wrap", "uv_scale", "uv_offset");
 /// In place of the number or colour of an input.
-inline constexpr auto kInputTexture =
-    make_keys("file", "factor", "filter", "channel", "color_space", "wrap", "uv_scale", "uv_offset");
+inline constexpr auto kInputTexture = make_keys("file", "factor", "filter", "channel", "color_space", "wrap",
+                                                "uv_scale", "uv_offset", "uv_set");
 inline constexpr auto kDisplacement =
     make_keys("type", "file", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale",
               "flip_v", "wrap", "dilate", "filter", "dequantize", "autobump");

@@ -20,6 +20,7 @@
 #include "math/affine.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "scene/uv_sets.h"
 
 namespace relief {
 
@@ -61,8 +62,9 @@ void read_animation(const JsonNode& node, MeshReadOptions& options) {
     if (time) options.time = double(time->as_float());
 }
 
-/// From memory or a file.
-Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSettings& reader) {
+/// From memory or a file, with what it has of further uv sets.
+Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSettings& reader,
+                   const std::vector<int>& uv_sets) {
     const JsonNode file = node.get("file");
     const std::string file_name = file.as_string();
     const auto uv_set = node.find("uv_set");
@@ -70,18 +72,17 @@ Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSet
         if (uv_set) uv_set->fail("is that of a file, and this mesh is in memory", "leave it out");
         return std::move(*mesh);
     }
-    constexpr int kLastUvSet = 255;
     MeshReadOptions options;
-    options.reader = reader;
-    if (uv_set) options.uv_set = int(uv_set->as_integer(0, kLastUvSet));
+    options.reader = reader, options.further_uv_sets = uv_sets;
+    if (uv_set) options.uv_set = int(uv_set->as_integer(0, kMaxUvSet));
     read_animation(node, options);
     return file.with_place([&] { return assets.load_polygons(file_name, options); });
 }
 
 Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets,
-               const MeshReaderSettings& reader) {
+               const MeshReaderSettings& reader, const std::vector<int>& uv_sets) {
     node.check_keys(scene_keys::kMesh);
-    Mesh mesh = read_polygons(node, assets, reader);
+    Mesh mesh = read_polygons(node, assets, reader, uv_sets);
     mesh.name = name;
     if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
     return mesh;
@@ -165,8 +166,9 @@ void SceneReader::read_root(const JsonNode& root, AssetCache& assets) {
     names_.displacements =
         read_section(root, "displacements", scene_.displacements, errors,
                      [&](const auto& name, const auto& n) { return read_displacement(n, name, assets); });
+    const std::vector<int> uv_sets = list_uv_sets(scene_.materials);
     names_.meshes = read_section(root, "meshes", scene_.meshes, errors, [&](const auto& name, const auto& n) {
-        return read_mesh(n, name, assets, reader_);
+        return read_mesh(n, name, assets, reader_, uv_sets);
     });
     read_list(root, "objects", errors, [&](const JsonNode& node) {
         ObjectRange range{scene_.objects.size(), 0, 0};
@@ -220,7 +222,8 @@ void SceneReader::read_part(const ScenePart& part, const Json& value, AssetCache
     } else if (part.section == "displacements") {
         scene_.displacements.at(part.index) = read_displacement(node, part.name, assets);
     } else if (part.section == "meshes") {
-        Mesh& mesh = scene_.meshes.at(part.index) = read_mesh(node, part.name, assets, reader_);
+        Mesh& mesh = scene_.meshes.at(part.index) =
+            read_mesh(node, part.name, assets, reader_, list_uv_sets(scene_.materials));
         node.with_place([&] { validate_mesh(mesh); });
     } else if (part.section == "objects") {
         replace_objects(part.index, read_objects(node, assets, ranges_.at(part.index).points_hash));

@@ -67,6 +67,21 @@ void check_tangents(const Scene& scene, const Object& object) {
                  fmt::format("mesh '{}'", mesh.name), "use frame mikk, or write the scene file by hand"});
 }
 
+/// Fails where a texture lies on another uv set than that of its mesh, which an OBJ cannot hold.
+void check_uv_sets(const Scene& scene, const Object& object) {
+    if (object.material == kNoIndex) return;
+    const Material& material = scene.materials[object.material];
+    const Mesh& mesh = scene.meshes[object.mesh];
+    for (const InputTexture& texture : material.textures)
+        if (texture.uv_set != kOwnUvSet && texture.uv_set != mesh.uv_set)
+            throw Error(
+                ErrorKind::bad_input,
+                {fmt::format("the {} of material '{}' lies on uv set {}, and a scene is saved with OBJ "
+                             "meshes, which hold one set",
+                             get_input_name(texture.input), material.name, texture.uv_set),
+                 fmt::format("mesh '{}'", mesh.name), "write the scene file by hand"});
+}
+
 /// Maps are saved as floats, which have no steps to smooth.
 void check_steps(const Displacement& map) {
     if (map.dequantize)
@@ -301,7 +316,7 @@ void save_shot(const Scene& scene, const SceneMotion& motion, const std::filesys
                const ProgressFunction& on_progress) {
     validate_scene(scene);
     check_motion(scene, motion);
-    for (const Object& object : scene.objects) check_tangents(scene, object);
+    for (const Object& object : scene.objects) check_tangents(scene, object), check_uv_sets(scene, object);
     for (const Displacement& map : scene.displacements) check_steps(map);
     SceneWriter(scene, motion, folder, on_progress).write();
 }

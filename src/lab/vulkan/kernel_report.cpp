@@ -70,7 +70,8 @@ const std::map<uint32_t, std::string> kConstantNames = {
     {scalar::kPolygonsConstant, "polygons"},
     {scalar::kTilesConstant, "tiles"},
     {scalar::kRayLodConstant, "ray_lod"},
-    {scalar::kCollectsConstant, "collects"}};
+    {scalar::kCollectsConstant, "collects"},
+    {scalar::kUvSetsConstant, "uv_sets"}};
 
 /// Makes the objects that make kernels, case by case, and lists what was compiled.
 class KernelLister {

@@ -76,9 +76,12 @@ Polygons cut_to_triangles(const Polygons& polygons) {
     Polygons result;
     result.where = polygons.where;
     result.positions = polygons.positions;
+    for (const CornerUvs& set : polygons.further_uvs) result.further_uvs.push_back({set.number, {}});
     const auto add_corner = [&](uint32_t corner) {
         result.points.push_back(polygons.points[corner]);
         if (!polygons.uvs.empty()) result.uvs.push_back(polygons.uvs[corner]);
+        for (size_t n = 0; n < polygons.further_uvs.size(); ++n)
+            result.further_uvs[n].uvs.push_back(polygons.further_uvs[n].uvs[corner]);
         if (!polygons.normals.empty()) result.normals.push_back(polygons.normals[corner]);
     };
     const auto begin_face = [&](uint32_t face) {

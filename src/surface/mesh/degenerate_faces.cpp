@@ -101,6 +101,10 @@ template <class Value> Value mix(const Value& a, const Value& b, float part) {
 void add_corner(const Polygons& from, uint32_t corner, uint32_t next, const EdgePoint& at, Polygons& to) {
     to.points.push_back(at.point);
     if (!from.uvs.empty()) to.uvs.push_back(mix(from.uvs[corner], from.uvs[next], at.part));
+    for (size_t n = 0; n < from.further_uvs.size(); ++n) {
+        const std::vector<Vec2f>& uvs = from.further_uvs[n].uvs;
+        to.further_uvs[n].uvs.push_back(mix(uvs[corner], uvs[next], at.part));
+    }
     if (!from.normals.empty()) to.normals.push_back(mix(from.normals[corner], from.normals[next], at.part));
     if (from.tangents.empty()) return;
     std::array<float, 4> tangent = from.tangents[corner];
@@ -153,6 +157,7 @@ void drop_degenerate_faces(Polygons& polygons) {
     for (uint32_t face = 0; face < polygons.face_count(); ++face)
         if (is_dropped[face]) splicer.splice(face);
     Polygons kept;
+    for (const CornerUvs& set : polygons.further_uvs) kept.further_uvs.push_back({set.number, {}});
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
         if (is_dropped[face]) continue;
         const uint32_t start = polygons.starts[face], size = polygons.face_size(face);

@@ -87,6 +87,19 @@ void copy_uvs(Surface& surface, const VertexSplitter& vertices) {
     for (uint32_t v = 0; v < vertices.count(); ++v) surface.uvs[v] = vertices.attributes(v).uv;
 }
 
+/// A patch for each face.
+void copy_further_uvs(Surface& surface, const Polygons& polygons) {
+    for (const CornerUvs& set : polygons.further_uvs) {
+        PatchUvs& uvs = surface.further_uvs.emplace_back();
+        uvs.number = set.number;
+        uvs.corners.resize(polygons.face_count());
+        for (uint32_t face = 0; face < polygons.face_count(); ++face)
+            for (uint32_t k = 0; k < 4; ++k)
+                uvs.corners[face][k] =
+                    set.uvs[polygons.starts[face] + std::min(k, polygons.face_size(face) - 1)];
+    }
+}
+
 /// Tile of a patch by the middle of its uvs, and what to take off them.
 struct TileChoice {
     uint8_t index = 0;
@@ -265,8 +278,8 @@ void check_derivatives(Surface& surface, const std::string& name) {
 }
 
 Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const Affine& object_from_world,
-                       PyramidCache& pyramids) {
-    Polygons polygons = make_polygons(mesh, Welding::equal_points);
+                       PyramidCache& pyramids, std::span<const int> uv_sets) {
+    Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
     if (polygons.uvs.empty())
         throw Error(ErrorKind::bad_input,
                     {fmt::format("mesh has no uvs, but displacement '{}' needs them", displacement.name),
@@ -279,6 +292,7 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     const std::vector<uint8_t> lacks_uvs = mark_faces_without_uvs(mesh, framed.base.polygons);
     VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim, lacks_uvs);
     find_overrides(surface, lacks_uvs);
+    copy_further_uvs(surface, framed.base.polygons);
     surface.controls = std::move(framed.base.controls);
     sources.point_normals = std::move(framed.point_normals);
     // A height moves along the normal alone.
@@ -288,15 +302,15 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     return surface;
 }
 
-Polygons make_plain_polygons(const Mesh& mesh) {
+Polygons make_plain_polygons(const Mesh& mesh, std::span<const int> uv_sets) {
     if (mesh.subdivision.scheme == SubdivisionScheme::none)
-        return cut_to_triangles(make_polygons(mesh, Welding::none));
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+        return cut_to_triangles(make_polygons(mesh, Welding::none, uv_sets));
+    const Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
     return cut_to_triangles(subdivide(polygons, mesh.subdivision, BasePatches::bilinear).polygons);
 }
 
-Surface make_plain(const Mesh& mesh) {
-    const Polygons polygons = make_plain_polygons(mesh);
+Surface make_plain(const Mesh& mesh, std::span<const int> uv_sets) {
+    const Polygons polygons = make_plain_polygons(mesh, uv_sets);
     Surface surface;
     surface.name = mesh.name;
     VertexSplitter vertices(polygons.positions.size());
@@ -314,6 +328,7 @@ Surface make_plain(const Mesh& mesh) {
     }
     copy_positions(surface, polygons, vertices, vertices.count());
     surface.quads.shrink_to_fit();
+    copy_further_uvs(surface, polygons);
     if (!polygons.uvs.empty()) copy_uvs(surface, vertices);
     if (!polygons.normals.empty())
         for (uint32_t v = 0; v < vertices.count(); ++v)
@@ -324,10 +339,11 @@ Surface make_plain(const Mesh& mesh) {
 } // namespace
 
 Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
-                     PyramidCache* pyramids) {
-    if (!displacement) return make_plain(mesh);
+                     PyramidCache* pyramids, std::span<const int> uv_sets) {
+    if (!displacement) return make_plain(mesh, uv_sets);
     PyramidCache own_pyramids;
-    return make_displaced(mesh, *displacement, object_from_world, pyramids ? *pyramids : own_pyramids);
+    return make_displaced(mesh, *displacement, object_from_world, pyramids ? *pyramids : own_pyramids,
+                          uv_sets);
 }
 
 } // namespace relief

@@ -1,5 +1,6 @@
 #include "surface/mesh/polygons.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
@@ -43,6 +44,7 @@ void check_counts(const Mesh& mesh, const std::string& where) {
     };
     check(mesh.position_indices.size(), "position indices");
     if (!mesh.uv_indices.empty()) check(mesh.uv_indices.size(), "uv indices");
+    for (const UvSet& set : mesh.further_uvs) check(set.indices.size(), "uv indices of a further set");
     if (!mesh.normal_indices.empty()) check(mesh.normal_indices.size(), "normal indices");
     if (!mesh.tangents.empty()) check(mesh.tangents.size(), "tangents");
     if (corner_count >= size_t(kNoIndex) / 8) fail("mesh has too many corners");
@@ -63,20 +65,24 @@ void check_face(const Mesh& mesh, const std::string& where, size_t face, size_t 
                            fmt::format("{} index {} is out of range, there are {}", name, index, count),
                            "write the mesh again");
     };
-    for (size_t corner = start; corner < start + size; ++corner) {
+    size_t corner = start;
+    const auto check_uv = [&](const std::vector<Vec2f>& uvs, const std::vector<uint32_t>& indices) {
+        if (indices.empty() || indices[start] == kNoIndex) return;
+        const uint32_t index = indices[corner];
+        check_index("uv", index, uvs.size());
+        const Vec2f& uv = uvs[index];
+        if (!(std::fabs(uv.x) <= kLargestUv && std::fabs(uv.y) <= kLargestUv))
+            throw_bad_face(where, face, fmt::format("uv {} is not finite or above 1e6", index),
+                           "unwrap the mesh again");
+    };
+    for (; corner < start + size; ++corner) {
         const uint32_t point = mesh.position_indices[corner];
         check_index("position", point, mesh.positions.size());
         if (!is_in_range(mesh.positions[point], kLargestCoordinate))
             throw_bad_face(where, face, fmt::format("position {} is not finite or above 1e18", point),
                            "write the mesh again");
-        if (!mesh.uv_indices.empty() && mesh.uv_indices[start] != kNoIndex) {
-            const uint32_t index = mesh.uv_indices[corner];
-            check_index("uv", index, mesh.uvs.size());
-            const Vec2f& uv = mesh.uvs[index];
-            if (!(std::fabs(uv.x) <= kLargestUv && std::fabs(uv.y) <= kLargestUv))
-                throw_bad_face(where, face, fmt::format("uv {} is not finite or above 1e6", index),
-                               "unwrap the mesh again");
-        }
+        check_uv(mesh.uvs, mesh.uv_indices);
+        for (const UvSet& set : mesh.further_uvs) check_uv(set.uvs, set.indices);
         if (!mesh.normal_indices.empty()) {
             const uint32_t index = mesh.normal_indices[corner];
             check_index("normal", index, mesh.normals.size());
@@ -118,6 +124,19 @@ std::vector<Crease> move_creases(const Mesh& mesh, const std::string& where,
     return result;
 }
 
+/// In the order of the mesh.
+std::vector<const UvSet*> choose_uv_sets(const Mesh& mesh, std::span<const int> numbers) {
+    std::vector<const UvSet*> result;
+    for (const UvSet& set : mesh.further_uvs)
+        if (std::ranges::find(numbers, set.number) != numbers.end()) result.push_back(&set);
+    return result;
+}
+
+/// Of corner k of the face whose corners begin at `start`.
+Vec2f get_uv(const std::vector<Vec2f>& uvs, const std::vector<uint32_t>& indices, size_t start, uint32_t k) {
+    return indices[start] == kNoIndex ? Vec2f{} : uvs[indices[start + k]];
+}
+
 template <class Corner> Vec3<double> sum_newell(uint32_t size, const Corner& corner) {
     const Vec3f origin = corner(0);
     const auto offset = [&](uint32_t k) {
@@ -150,7 +169,7 @@ Vec3<double> compute_newell_normal(std::span<const Vec3f> corners) {
     return sum_newell(uint32_t(corners.size()), [&](uint32_t k) { return corners[k]; });
 }
 
-Polygons make_polygons(const Mesh& mesh, Welding welding) {
+Polygons make_polygons(const Mesh& mesh, Welding welding, std::span<const int> uv_sets) {
     Polygons result;
     result.where = describe_mesh(mesh);
     check_counts(mesh, result.where);
@@ -158,6 +177,9 @@ Polygons make_polygons(const Mesh& mesh, Welding welding) {
     for (Vec3f& p : result.positions) p = p + Vec3f{}; // -0 becomes 0
     std::vector<uint32_t> representatives;
     if (welding == Welding::equal_points) representatives = find_equal_points(result.positions);
+
+    const std::vector<const UvSet*> wanted = choose_uv_sets(mesh, uv_sets);
+    for (const UvSet* set : wanted) result.further_uvs.push_back({set->number, {}});
 
     if (mesh.subdivision.creases == CreaseRule::obey)
         result.creases = move_creases(mesh, result.where, representatives);
@@ -173,10 +195,9 @@ Polygons make_polygons(const Mesh& mesh, Welding welding) {
             // A face whose corners all coincide loses them all and has no area.
             if (result.positions[point] == result.positions[previous]) continue;
             result.points.push_back(representatives.empty() ? point : representatives[point]);
-            if (!mesh.uv_indices.empty()) {
-                const bool has_uv = mesh.uv_indices[start] != kNoIndex;
-                result.uvs.push_back(has_uv ? mesh.uvs[mesh.uv_indices[start + k]] : Vec2f{});
-            }
+            if (!mesh.uv_indices.empty()) result.uvs.push_back(get_uv(mesh.uvs, mesh.uv_indices, start, k));
+            for (size_t n = 0; n < wanted.size(); ++n)
+                result.further_uvs[n].uvs.push_back(get_uv(wanted[n]->uvs, wanted[n]->indices, start, k));
             if (!mesh.normal_indices.empty())
                 result.normals.push_back(mesh.normals[mesh.normal_indices[start + k]]);
             if (!mesh.tangents.empty()) result.tangents.push_back(mesh.tangents[start + k]);

@@ -11,13 +11,20 @@
 
 namespace relief {
 
+/// One set of uvs beside those of the mesh.
+struct CornerUvs {
+    int number;             ///< as UvSet::number
+    std::vector<Vec2f> uvs; ///< one a corner; (0, 0) where the face has none
+};
+
 struct Polygons {
     std::string where; ///< file and mesh, for messages
     std::vector<Vec3f> positions;
     std::vector<uint32_t> starts; ///< first corner of each face, and the end of the last one
     std::vector<uint32_t> points; ///< index into positions, one a corner
     std::vector<Vec2f> uvs;       ///< one a corner, or empty; (0, 0) where the face has none
-    std::vector<Vec3f> normals;   ///< one a corner, or empty
+    std::vector<CornerUvs> further_uvs;
+    std::vector<Vec3f> normals; ///< one a corner, or empty
     /// One a corner, or empty: direction of growing u (x, y, z) and sign of the bitangent, as in Mesh.
     std::vector<std::array<float, 4>> tangents;
     std::vector<Vec3f> bitangents; ///< one a corner, or empty; with them, `tangents` are dP/du, they dP/dv
@@ -33,9 +40,10 @@ enum class Welding {
     equal_points ///< points at exactly equal positions become one, as exporters take them apart
 };
 
-/// Resolves and checks a mesh; drops repeated corners and faces without area (degenerate_faces.h). Throws
-/// bad_input with mesh and face: index out of range, value not finite or beyond 1e18, no face left.
-Polygons make_polygons(const Mesh& mesh, Welding welding);
+/// Resolves and checks a mesh; drops repeated corners and faces without area (degenerate_faces.h). `uv_sets`:
+/// which of its further uvs are wanted, where it has them. Throws bad_input with mesh and face: index out of
+/// range, value not finite or beyond 1e18, no face left.
+Polygons make_polygons(const Mesh& mesh, Welding welding, std::span<const int> uv_sets = {});
 
 /// First point at the same position, for each point.
 std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions);

@@ -21,6 +21,7 @@ QuadCutter::QuadCutter(const RefinedMesh& source, std::vector<SideCut> cuts)
     result_.limit_normals = source.limit_normals;
     result_.is_sharp = source.is_sharp;
     result_.is_bent.assign(source.is_sharp.size(), false);
+    result_.further_uvs.resize(source.further_uvs.size());
 }
 
 uint32_t QuadCutter::add_point() {
@@ -87,6 +88,8 @@ void QuadCutter::add_whole(uint32_t quad) {
     result_.points.push_back(source_.points[quad]), result_.edges.push_back(source_.edges[quad]);
     result_.places.push_back(source_.places[quad]);
     if (!source_.uvs.empty()) result_.uvs.push_back(source_.uvs[quad]);
+    for (size_t n = 0; n < source_.further_uvs.size(); ++n)
+        result_.further_uvs[n].push_back(source_.further_uvs[n][quad]);
 }
 
 void QuadCutter::add_box(const Corner& lower, const Corner& upper) {
@@ -101,18 +104,26 @@ QuadCutter::Corner QuadCutter::blend_place(const Corner& corner) const {
     return blend(turned, corner);
 }
 
-void QuadCutter::add_uvs(const std::array<Corner, 4>& corners) {
-    if (source_.uvs.empty()) return;
+/// `uvs`: of the quad at work.
+std::array<Vec2f, 4> QuadCutter::blend_uvs(const std::array<Vec2f, 4>& uvs,
+                                           const std::array<Corner, 4>& corners) const {
     std::array<Corner, 4> turned;
     for (uint32_t k = 0; k < 4; ++k) {
-        const Vec2f& uv = source_.uvs[view_.quad][(k + view_.turn) % 4];
+        const Vec2f& uv = uvs[(k + view_.turn) % 4];
         turned[k] = {uv.x, uv.y};
     }
-    std::array<Vec2f, 4>& added = result_.uvs.emplace_back();
+    std::array<Vec2f, 4> result;
     for (size_t k = 0; k < 4; ++k) {
         const Corner uv = blend(turned, corners[k]);
-        added[k] = {float(uv.x), float(uv.y)};
+        result[k] = {float(uv.x), float(uv.y)};
     }
+    return result;
+}
+
+void QuadCutter::add_uvs(const std::array<Corner, 4>& corners) {
+    if (!source_.uvs.empty()) result_.uvs.push_back(blend_uvs(source_.uvs[view_.quad], corners));
+    for (size_t n = 0; n < source_.further_uvs.size(); ++n)
+        result_.further_uvs[n].push_back(blend_uvs(source_.further_uvs[n][view_.quad], corners));
 }
 
 void QuadCutter::add(const std::array<Corner, 4>& corners) {

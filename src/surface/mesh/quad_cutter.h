@@ -60,6 +60,8 @@ class QuadCutter {
     uint32_t find_edge(uint32_t a, uint32_t b);
     void register_side(uint32_t k);
     Corner blend_place(const Corner& corner) const;
+    std::array<Vec2f, 4> blend_uvs(const std::array<Vec2f, 4>& uvs,
+                                   const std::array<Corner, 4>& corners) const;
     void add_uvs(const std::array<Corner, 4>& corners);
 
     struct CutEdge {

@@ -87,6 +87,23 @@ class FrameBlender {
     std::vector<uint32_t> face_;
 };
 
+/// Uvs of the corners of the quads that each face becomes.
+std::vector<Vec2f> refine_uvs(const Polygons& polygons, const std::vector<Vec2f>& uvs) {
+    std::vector<Vec2f> result;
+    for (uint32_t face = 0; face < polygons.face_count() && !uvs.empty(); ++face) {
+        const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
+        Vec2f middle{};
+        for (uint32_t k = start; k < start + size; ++k) middle = middle + uvs[k];
+        middle = {middle.x / float(size), middle.y / float(size)};
+        for (uint32_t k = 0; k < size; ++k) {
+            const Vec2f &uv = uvs[start + k], &next = uvs[start + (k + 1) % size],
+                        &previous = uvs[start + (k + size - 1) % size];
+            result.insert(result.end(), {uv, (uv + next) * 0.5f, middle, (previous + uv) * 0.5f});
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 Polygons refine_to_quads(const Polygons& polygons) {
@@ -94,19 +111,13 @@ Polygons refine_to_quads(const Polygons& polygons) {
     result.where = polygons.where;
     result.positions = polygons.positions;
     const std::vector<uint32_t> edge_points = add_edge_points(polygons, result.positions);
-    const bool has_uvs = !polygons.uvs.empty();
     FrameBlender frames(polygons, result);
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
         const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
         Vec3f middle{};
-        Vec2f middle_uv{};
-        for (uint32_t k = start; k < start + size; ++k) {
-            middle += polygons.positions[polygons.points[k]];
-            if (has_uvs) middle_uv = middle_uv + polygons.uvs[k];
-        }
+        for (uint32_t k = start; k < start + size; ++k) middle += polygons.positions[polygons.points[k]];
         const uint32_t face_point = uint32_t(result.positions.size());
         result.positions.push_back(middle / float(size));
-        middle_uv = {middle_uv.x / float(size), middle_uv.y / float(size)};
         for (uint32_t k = 0; k < size; ++k) {
             const uint32_t corner = start + k, previous = start + (k + size - 1) % size;
             result.starts.push_back(uint32_t(result.points.size()));
@@ -114,12 +125,11 @@ Polygons refine_to_quads(const Polygons& polygons) {
                                                        face_point, edge_points[previous]});
             result.source_faces.push_back(polygons.source_faces[face]);
             frames.add_quad(start, size, k);
-            if (!has_uvs) continue;
-            const Vec2f &uv = polygons.uvs[corner], &next_uv = polygons.uvs[start + (k + 1) % size];
-            result.uvs.insert(result.uvs.end(),
-                              {uv, (uv + next_uv) * 0.5f, middle_uv, (polygons.uvs[previous] + uv) * 0.5f});
         }
     }
+    result.uvs = refine_uvs(polygons, polygons.uvs);
+    for (const CornerUvs& set : polygons.further_uvs)
+        result.further_uvs.push_back({set.number, refine_uvs(polygons, set.uvs)});
     result.starts.push_back(uint32_t(result.points.size()));
     return result;
 }

@@ -126,6 +126,11 @@ Polygons make_quads(const RefinedMesh& refined, const Polygons& source) {
             polygons.uvs.insert(polygons.uvs.end(), refined.uvs[quad].begin(), refined.uvs[quad].end());
         polygons.source_faces.push_back(source.source_faces[refined.places[quad].face]);
     }
+    for (size_t n = 0; n < source.further_uvs.size(); ++n) {
+        CornerUvs& set = polygons.further_uvs.emplace_back(CornerUvs{source.further_uvs[n].number, {}});
+        for (const std::array<Vec2f, 4>& uvs : refined.further_uvs[n])
+            set.uvs.insert(set.uvs.end(), uvs.begin(), uvs.end());
+    }
     polygons.starts.push_back(4 * refined.quad_count());
     return polygons;
 }

@@ -97,15 +97,17 @@ void check_faces(const Polygons& polygons) {
 }
 
 /// Fails where OpenSubdiv does not take the topology.
-RefinerPointer make_refiner(const Polygons& polygons, const Subdivision& subdivision, const UvTopology& uvs,
-                            const CreaseLists& creases) {
+RefinerPointer make_refiner(const Polygons& polygons, const Subdivision& subdivision,
+                            const std::vector<UvTopology>& uv_sets, const CreaseLists& creases) {
     std::vector<int> sizes;
     const std::vector<int> points(polygons.points.begin(), polygons.points.end());
     for (uint32_t face = 0; face < polygons.face_count(); ++face)
         sizes.push_back(int(polygons.face_size(face)));
-    osd::Far::TopologyDescriptor::FVarChannel channel;
-    channel.numValues = int(uvs.values.size());
-    channel.valueIndices = uvs.indices.data();
+    std::vector<osd::Far::TopologyDescriptor::FVarChannel> channels(uv_sets.size());
+    for (size_t k = 0; k < uv_sets.size(); ++k) {
+        channels[k].numValues = int(uv_sets[k].values.size());
+        channels[k].valueIndices = uv_sets[k].indices.data();
+    }
     osd::Far::TopologyDescriptor descriptor;
     descriptor.numVertices = int(polygons.positions.size());
     descriptor.numFaces = int(sizes.size());
@@ -117,8 +119,8 @@ RefinerPointer make_refiner(const Polygons& polygons, const Subdivision& subdivi
     descriptor.numCorners = int(creases.corners.size());
     descriptor.cornerVertexIndices = creases.corners.data();
     descriptor.cornerWeights = creases.corner_sharpness.data();
-    descriptor.numFVarChannels = uvs.values.empty() ? 0 : 1;
-    descriptor.fvarChannels = &channel;
+    descriptor.numFVarChannels = int(channels.size());
+    descriptor.fvarChannels = channels.data();
 
     using RefinerFactory = osd::Far::TopologyRefinerFactory<osd::Far::TopologyDescriptor>;
     const auto scheme = subdivision.scheme == SubdivisionScheme::bilinear ? osd::Sdc::SCHEME_BILINEAR
@@ -217,7 +219,8 @@ LimitSample LimitFace::evaluate(uint32_t part, double u, double v) const {
 struct SubdivisionMesh::Implementation {
     std::string where;
     int level = 0;
-    UvTopology uvs;
+    std::vector<UvTopology> uv_sets; ///< a channel each: first that of the mesh, if it has one
+    bool has_uvs = false;            ///< it has one
     std::vector<double> positions;
     RefinerPointer refiner;
     std::optional<Factory> factory;
@@ -228,7 +231,7 @@ struct SubdivisionMesh::Implementation {
     int get_depth(uint32_t face) const;
     std::vector<CellOrigin> find_origins() const;
     std::vector<QuadPlace> find_places() const;
-    std::vector<BlendedUv> refine_uvs() const;
+    std::vector<std::array<Vec2f, 4>> refine_uvs(int channel) const;
     std::vector<BlendedPoint> refine_points() const;
     std::vector<Vec3d> find_limit_normals(const std::vector<bool>& is_regular) const;
     void copy_quads(RefinedMesh& refined) const;
@@ -288,7 +291,9 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
     Implementation& self = *implementation_;
     check_faces(polygons);
     self.where = polygons.where;
-    self.uvs = join_uvs(polygons);
+    self.has_uvs = !polygons.uvs.empty();
+    if (self.has_uvs) self.uv_sets.push_back(join_uvs(polygons, polygons.uvs));
+    for (const CornerUvs& set : polygons.further_uvs) self.uv_sets.push_back(join_uvs(polygons, set.uvs));
     for (const Vec3f& p : polygons.positions) self.positions.insert(self.positions.end(), {p.x, p.y, p.z});
     bool is_all_quads = true;
     for (uint32_t face = 0; face < polygons.face_count(); ++face)
@@ -296,7 +301,7 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
     self.level = std::max(subdivision.level, is_all_quads ? 0 : 1);
 
     const CreaseLists creases = list_creases(polygons);
-    self.refiner = make_refiner(polygons, subdivision, self.uvs, creases);
+    self.refiner = make_refiner(polygons, subdivision, self.uv_sets, creases);
     self.check_edges(polygons);
     self.check_points(polygons);
     self.check_creases(polygons);
@@ -377,25 +382,33 @@ std::vector<Blended<Value>> refine_values(std::vector<Blended<Value>> values, in
     return values;
 }
 
-std::vector<BlendedUv> SubdivisionMesh::Implementation::refine_uvs() const {
+/// Uvs of the corners of the quads at `level`.
+std::vector<std::array<Vec2f, 4>> SubdivisionMesh::Implementation::refine_uvs(int channel) const {
     const osd::Far::PrimvarRefinerReal<double> primvars(*refiner);
     std::vector<BlendedUv> base;
-    for (const Vec2f& uv : uvs.values) base.push_back({{uv.x, uv.y}});
+    for (const Vec2f& uv : uv_sets[size_t(channel)].values) base.push_back({{uv.x, uv.y}});
     const std::vector<BlendedUv> refined = refine_values(
-        std::move(base), level, [&](int k) { return refiner->GetLevel(k).GetNumFVarValues(); },
-        [&](int k, const auto& from, auto& to) { primvars.InterpolateFaceVarying(k, from, to); });
+        std::move(base), level, [&](int k) { return refiner->GetLevel(k).GetNumFVarValues(channel); },
+        [&](int k, const auto& from, auto& to) { primvars.InterpolateFaceVarying(k, from, to, channel); });
     std::vector<BlendedUv> limit(refined.size());
-    primvars.LimitFaceVarying(refined, limit);
-    return limit;
+    primvars.LimitFaceVarying(refined, limit, channel);
+    const osd::Far::TopologyLevel last = refiner->GetLevel(level);
+    std::vector<std::array<Vec2f, 4>> result(size_t(last.GetNumFaces()));
+    for (size_t quad = 0; quad < result.size(); ++quad) {
+        const osd::Far::ConstIndexArray values = last.GetFaceFVarValues(int(quad), channel);
+        for (size_t k = 0; k < 4; ++k) {
+            const Vec2<double>& uv = limit[size_t(values[int(k)])].value;
+            result[quad][k] = {float(uv.x), float(uv.y)};
+        }
+    }
+    return result;
 }
 
 void SubdivisionMesh::Implementation::copy_quads(RefinedMesh& refined) const {
     const osd::Far::TopologyLevel last = refiner->GetLevel(level);
-    const std::vector<BlendedUv> limit = uvs.values.empty() ? std::vector<BlendedUv>{} : refine_uvs();
     const auto quad_count = uint32_t(last.GetNumFaces());
     refined.first_quads.assign(size_t(last.GetNumEdges()), kNoIndex);
     refined.points.resize(quad_count), refined.edges.resize(quad_count);
-    if (!limit.empty()) refined.uvs.resize(quad_count);
     for (uint32_t quad = 0; quad < quad_count; ++quad) {
         const auto points = last.GetFaceVertices(int(quad)), edges = last.GetFaceEdges(int(quad));
         for (size_t k = 0; k < 4; ++k) {
@@ -403,10 +416,14 @@ void SubdivisionMesh::Implementation::copy_quads(RefinedMesh& refined) const {
             refined.edges[quad][k] = uint32_t(edges[int(k)]);
             uint32_t& first = refined.first_quads[size_t(edges[int(k)])];
             first = std::min(first, quad);
-            if (limit.empty()) continue;
-            const Vec2<double>& uv = limit[size_t(last.GetFaceFVarValues(int(quad))[int(k)])].value;
-            refined.uvs[quad][k] = {float(uv.x), float(uv.y)};
         }
+    }
+    for (size_t k = 0; k < uv_sets.size(); ++k) {
+        std::vector<std::array<Vec2f, 4>> uvs = refine_uvs(int(k));
+        if (k == 0 && has_uvs)
+            refined.uvs = std::move(uvs);
+        else
+            refined.further_uvs.push_back(std::move(uvs));
     }
 }
 

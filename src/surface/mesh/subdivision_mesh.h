@@ -34,6 +34,9 @@ struct RefinedMesh {
     std::vector<bool> is_straight;      ///< one a point: regular but for a semi-sharp crease straight through
     std::vector<Vec3d> limit_normals;   ///< one a point: where it is irregular and smooth, else (0, 0, 0)
 
+    /// One a quad, of each further set of the polygons.
+    std::vector<std::vector<std::array<Vec2f, 4>>> further_uvs;
+
     uint32_t quad_count() const { return uint32_t(points.size()); }
 };
 

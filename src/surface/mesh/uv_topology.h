@@ -13,7 +13,7 @@ struct UvTopology {
     std::vector<Vec2f> values;
 };
 
-/// Numbers by corner, values by number.
-UvTopology join_uvs(const Polygons& polygons);
+/// Of `uvs`, one a corner of the polygons, or none: numbers by corner, values by number.
+UvTopology join_uvs(const Polygons& polygons, const std::vector<Vec2f>& uvs);
 
 } // namespace relief

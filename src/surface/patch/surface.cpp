@@ -17,10 +17,13 @@ Surface::EdgeLine Surface::edge_line(uint32_t patch, int edge) const {
 }
 
 size_t Surface::geometry_bytes() const {
-    return positions.size() * sizeof(Vec3f) + copies.byte_count() + uvs.size() * sizeof(Vec2f) +
-           frames.size() * sizeof(PackedFrame) + derivatives.size() * sizeof(derivatives[0]) +
-           corner_tangents.size() * sizeof(corner_tangents[0]) + vertex_tiles.size() + quads.byte_count() +
-           mips.size() * sizeof(uint32_t) + controls.size() * sizeof(InnerControls) + overrides.byte_count();
+    size_t further_bytes = 0;
+    for (const PatchUvs& set : further_uvs) further_bytes += set.corners.size() * sizeof(set.corners[0]);
+    return further_bytes + positions.size() * sizeof(Vec3f) + copies.byte_count() +
+           uvs.size() * sizeof(Vec2f) + frames.size() * sizeof(PackedFrame) +
+           derivatives.size() * sizeof(derivatives[0]) + corner_tangents.size() * sizeof(corner_tangents[0]) +
+           vertex_tiles.size() + quads.byte_count() + mips.size() * sizeof(uint32_t) +
+           controls.size() * sizeof(InnerControls) + overrides.byte_count();
 }
 
 } // namespace relief

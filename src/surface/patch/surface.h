@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,12 @@ struct DisplacementMap {
 /// Control points of a bicubic patch beside its corners (less 4), bit-equal on shared edges.
 using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
 
+/// Uvs of another set than the mesh's own, for textures of materials.
+struct PatchUvs {
+    int number = 0;                            ///< as UvSet::number
+    std::vector<std::array<Vec2f, 4>> corners; ///< one a patch; of a triangle the last two are alike
+};
+
 /// Read from any thread. Only the texels and bounds behind `map`, and `mips`, ever change, through the
 /// scene's editor (prepare/scene_edit.h) and while nobody reads.
 struct Surface {
@@ -80,6 +87,7 @@ struct Surface {
                                                    ///< relative, or empty
     /// Of normal maps, one a corner of each patch as in PackedFrame::tangent, or empty: no material has one.
     std::vector<std::array<uint32_t, 4>> corner_tangents;
+    std::vector<PatchUvs> further_uvs;
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     QuadList quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
@@ -104,6 +112,12 @@ struct Surface {
     Frame frame(uint32_t vertex) const {
         if (derivatives.empty()) return unpack_frame(frames[vertex]);
         return {derivatives[vertex][0], derivatives[vertex][1], unpack_normal(frames[vertex])};
+    }
+    /// Null: of the mesh's own set, and of one that nobody asked for.
+    const PatchUvs* find_further_uvs(int number) const {
+        for (const PatchUvs& set : further_uvs)
+            if (set.number == number) return &set;
+        return nullptr;
     }
     uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
 
@@ -165,10 +179,11 @@ class PyramidCache;
 /// point; without, n-gons and concave quads are cut into triangles. Corners that repeat the position of the
 /// corner before are dropped, so a quad with a collapsed edge counts as a triangle. `object_from_world` is
 /// used by world-space displacement only. Surfaces made with the same `pyramids`
-/// (surface/map/displacement_map.h) share the bounds of their textures. Throws bad_input with mesh and face:
-/// missing uv, index out of range, no face with an area, a value that is not finite or absurdly large.
+/// (surface/map/displacement_map.h) share the bounds of their textures. `uv_sets`: which of the mesh's
+/// further uvs textures lie on. Throws bad_input with mesh and face: missing uv, index out of range, no face
+/// with an area, a value that is not finite or absurdly large.
 Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
-                     PyramidCache* pyramids = nullptr);
+                     PyramidCache* pyramids = nullptr, std::span<const int> uv_sets = {});
 
 /// Sample (i, j) of a patch in [0, 2^level]^2, object space, by definition: edge samples lie on the edge's
 /// line, snapped to its level; corners are the dominant vertex's; the rest is the bilinear patch displaced.

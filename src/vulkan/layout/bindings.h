@@ -53,7 +53,7 @@ const uint kBindQuads = 36u;        ///< rgba32ui
 const uint kBindDominants = 37u;    ///< r32ui
 const uint kBindVertexTiles = 38u;  ///< r32ui: four per word
 const uint kBindOverrides = 39u;    ///< rgba32ui: patch edge, first, second, 0
-const uint kBindOverrideBits = 40u; ///< r32ui; also the mips of patches
+const uint kBindOverrideBits = 40u; ///< r32ui; also mips and tangents of patches, places of uv sets
 const uint kBindLevels = 41u;       ///< r32ui: pack_levels, one per patch of an instance
 const uint kBindPrimitiveIds = 42u; ///< r32ui: polygons in leaf order
 const uint kBindFloatTexels = 43u;  ///< rgba32f: maps and textures
@@ -124,6 +124,8 @@ const uint kTilesConstant = 25u;
 const uint kRayLodConstant = 26u;
 // Of the walk of a round that collects: not 0.
 const uint kCollectsConstant = 27u;
+// Of kernels that know of materials: not 0 where a texture of one lies on another uv set than its mesh's own.
+const uint kUvSetsConstant = 28u;
 
 #include "formulas/end.h"
 #endif

@@ -44,6 +44,9 @@ struct SurfaceData {
     uint first_derivative; ///< of positions, in vertices: dP/du and dP/dv of each vertex; kNone: unit frames
     uint has_bilinear_uvs; ///< of polygons; else linear on each triangle
     uint first_tangent;    ///< of override_bits: one word per corner of each patch (frame.h); kNone: none
+    /// Of override_bits: a word for each further uv set of the scene, which is the first of four uvs per
+    /// patch, or kNone. kNone: the surface has only its own.
+    uint first_uv_set;
 };
 
 /// d = matrix (texel - midlevel).
@@ -106,6 +109,7 @@ struct InputTextureData {
     uint
         first_tile; ///< word of the buffer; tiles are indices into textures, with kSplineTexture; kNone: none
     uint tile_count;
+    uint uv_set; ///< one of the further sets of the scene (SurfaceData::first_uv_set); kNone: the mesh's own
 };
 
 /// A tile of a patch above level 5: its tree index = number of all patches + its index among tile records.

@@ -14,11 +14,11 @@ layout(scalar, set = 0, binding = kBindMaterials) readonly buffer InputTiles { u
 bool has_input_textures(MaterialData material) { return kHasInputTextures != 0u && material.inputs != kNone; }
 
 /// `numbers`: those before the textures.
-InputNumbers find_inputs(MaterialInputData inputs, InputNumbers numbers, vec2 uv) {
+InputNumbers find_inputs(MaterialInputData inputs, InputNumbers numbers, TexturePlace place) {
     // A loop, so that the look-up is inlined only once.
     for (uint k = 0u; k < inputs.texture_count; ++k) {
         InputTextureData source = input_textures[inputs.first_texture + k];
-        vec2 at = uv * source.uv_scale + source.uv_offset;
+        vec2 at = find_uv(place, source.uv_set) * source.uv_scale + source.uv_offset;
         uint tile = 0u;
         if (source.is_udim != 0u) {
             vec2 corner = vec2(floor_texel(at.x), floor_texel(at.y));
@@ -38,7 +38,8 @@ InputNumbers find_inputs(MaterialInputData inputs, InputNumbers numbers, vec2 uv
 /// `at`: on the patch of an instance.
 InputNumbers find_inputs_at(MaterialInputData inputs, InstanceData instance, uint patch_index, vec2 at) {
     SurfaceData s = surfaces[instance.surface];
-    return find_inputs(inputs, inputs.numbers, interpolate_uv(s, load_quad(s, patch_index), at));
+    vec2 uv = interpolate_uv(s, load_quad(s, patch_index), at);
+    return find_inputs(inputs, inputs.numbers, TexturePlace(instance.surface, patch_index, at, uv));
 }
 
 #endif

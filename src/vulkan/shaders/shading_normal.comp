@@ -25,14 +25,14 @@ struct Appearance {
 };
 
 /// What textures of other inputs, and those with a place of their own, add.
-void apply_inputs(MaterialInputData inputs, inout Appearance appearance) {
+void apply_inputs(MaterialInputData inputs, TexturePlace place, inout Appearance appearance) {
     InputNumbers numbers = inputs.numbers;
     numbers.word[kInputBaseColor] = appearance.base_color.x;
     numbers.word[kInputBaseColor + 1u] = appearance.base_color.y;
     numbers.word[kInputBaseColor + 2u] = appearance.base_color.z;
     numbers.word[kInputRoughness] = appearance.roughness;
     numbers.word[kInputMetallic] = appearance.metallic;
-    numbers = find_inputs(inputs, numbers, appearance.uv);
+    numbers = find_inputs(inputs, numbers, place);
     appearance.base_color = get_input_color(numbers, kInputBaseColor);
     appearance.roughness = numbers.word[kInputRoughness];
     appearance.metallic = numbers.word[kInputMetallic];
@@ -44,7 +44,7 @@ void apply_inputs(MaterialInputData inputs, inout Appearance appearance) {
     appearance.numbers = numbers;
 }
 
-void apply_material(MaterialData material, inout Appearance appearance) {
+void apply_material(MaterialData material, TexturePlace place, inout Appearance appearance) {
     uint indices[4] = {material.color_texture, material.roughness_texture, material.metallic_texture,
                        material.normal_texture};
     vec3 values[4] = {vec3(1.0), vec3(1.0), vec3(1.0), vec3(1.0)};
@@ -57,7 +57,7 @@ void apply_material(MaterialData material, inout Appearance appearance) {
     appearance.normal_texel = values[3];
     appearance.has_normal_texel = material.normal_texture != kNone;
     appearance.has_numbers = false;
-    if (has_input_textures(material)) apply_inputs(material_inputs[material.inputs], appearance);
+    if (has_input_textures(material)) apply_inputs(material_inputs[material.inputs], place, appearance);
 }
 
 /// As cpu/shading/normal_maps.cpp; `normal` on the side of the winding.
@@ -94,7 +94,7 @@ Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) 
     Appearance appearance;
     appearance.uv = interpolate_uv(s, quad, at);
     MaterialData material = load_material_numbers(instance.material);
-    apply_material(material, appearance);
+    apply_material(material, TexturePlace(instance.surface, hit.patch_index, at, appearance.uv), appearance);
     bool is_mapped = kHasNormalMaps != 0u && appearance.has_normal_texel;
     appearance.has_tangent = kHasAnisotropy != 0u && is_anisotropic(material);
     if (is_mapped || appearance.has_tangent)

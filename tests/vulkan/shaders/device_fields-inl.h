@@ -56,7 +56,7 @@ struct AllStructs {
     FIELD(s.first_vertex) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
     FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_override) FIELD(s.override_count) \
     FIELD(s.first_override_word) FIELD(s.map) FIELD(s.first_control) FIELD(s.first_mip) \
-    FIELD(s.first_derivative) FIELD(s.has_bilinear_uvs) FIELD(s.first_tangent)
+    FIELD(s.first_derivative) FIELD(s.has_bilinear_uvs) FIELD(s.first_tangent) FIELD(s.first_uv_set)
 #define FIELDS_MAP(s) \
     FIELD3(s.row0) FIELD3(s.row1) FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) \
     FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count) FIELD(s.is_smooth)
@@ -88,7 +88,7 @@ struct AllStructs {
     FIELDS_GRID(s.grid) FIELD(s.has_normal) FIELD(s.first_texture) FIELD(s.texture_count)
 #define FIELDS_INPUT_TEXTURE(s) \
     FIELD(s.place) FIELD(s.count) FIELD(s.is_number) FIELD(s.is_udim) FIELD(s.wrap) FIELD2(s.uv_scale) \
-    FIELD2(s.uv_offset) FIELD(s.first_tile) FIELD(s.tile_count)
+    FIELD2(s.uv_offset) FIELD(s.first_tile) FIELD(s.tile_count) FIELD(s.uv_set)
 #define FIELDS_TILE(s) \
     FIELD(s.instance) FIELD(s.patch_index) FIELD(s.levels) FIELD(s.cell_x) FIELD(s.cell_y)
 #define FIELDS_RAY(s) \
