@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -40,6 +40,8 @@ class Mesh:
     faces: (F, 3) or (F, 4) integers, counter-clockwise; a list of lists; or a tuple of two flat arrays, the sizes of the
         faces and the corners of all of them.
     uvs: (C, 2), one for each of the C corners of all faces; or (M, 2) with uv_indices, (C,) or of the shape of faces.
+    further_uvs: uv sets of textures that name one by `uv_set`: a dict of numbers, 1 to 255, to (C, 2), or to tuples of
+        (M, 2) and indices. `uvs` are set 0; displacements and normal maps lie on them.
     normals: (C, 3), or (M, 3) with normal_indices, likewise; unit length.
     tangents: (C, 4), unit x, y, z and the sign of the bitangent.
     creases: (K, 3), rows of two indices of positions and a sharpness, 10 being infinitely sharp; or a tuple of edges (K, 2)
@@ -47,15 +49,18 @@ class Mesh:
     subdivision: dict of the scene file's key: scheme, level, uv, boundary, creases.
     warnings: what of the file that it was loaded from does not show in it.
 
-    The attributes hold the arrays; `sizes` and `corners` are those of the faces. They may be replaced or written to."""
+    The attributes hold the arrays; `sizes` and `corners` are those of the faces, `uv_set` is the number of the set that
+    `uvs` are, `further_uvs` holds tuples of uvs and indices or None. They may be replaced or written to."""
 
     def __init__(self, positions: Any, faces: Any, uvs: Any = None, uv_indices: Any = None, normals: Any = None,
                  normal_indices: Any = None, tangents: Any = None, creases: Any = None,
-                 subdivision: Optional[Mapping[str, Any]] = None) -> None:
+                 subdivision: Optional[Mapping[str, Any]] = None, further_uvs: Optional[Mapping[int, Any]] = None) -> None:
         self.positions: Array = as_floats(positions, "positions", 3)
         self.sizes, corners = split_faces(faces)
         self.corners: Array = as_indices(corners, "faces", len(self.positions))
         self.uvs, self.uv_indices = self._read_attribute(uvs, uv_indices, "uvs", 2)
+        self.uv_set = 0
+        self.further_uvs: dict[int, tuple[Array, Optional[Array]]] = self._read_further_uvs(further_uvs or {})
         self.normals, self.normal_indices = self._read_attribute(normals, normal_indices, "normals", 3)
         self.tangents: Optional[Array] = None if tangents is None else as_floats(tangents, "tangents", 4)
         self.creases: Optional[Array] = None
@@ -77,6 +82,24 @@ class Mesh:
         flat = to_numpy(indices, f"{name[:-1]}_indices").reshape(-1)
         return array, as_indices(flat, f"{name[:-1]}_indices", len(array))
 
+    def _read_further_uvs(self, sets: Mapping[int, Any]) -> dict[int, tuple[Array, Optional[Array]]]:
+        """Numbers to uvs and indices, checked."""
+        found: dict[int, tuple[Array, Optional[Array]]] = {}
+        for number, given in sets.items():
+            name = f"further_uvs[{number!r}]"
+            if isinstance(number, bool) or not isinstance(number, (int, np.integer)) or not 0 <= number <= 255:
+                raise ValueError(f"{name}: the number of a uv set is a whole one, 0 to 255")
+            if number == self.uv_set:
+                raise ValueError(f"{name}: uvs are set {number}")
+            values, indices = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
+            uvs = as_floats(values, name, 2)
+            check_finite(uvs, name)
+            if indices is not None:
+                indices = as_indices(to_numpy(indices, name).reshape(-1), name, len(uvs))
+            self._check_count(uvs, indices, name)
+            found[int(number)] = (uvs, indices)
+        return found
+
     def _read_creases(self, creases: Any) -> None:
         if isinstance(creases, tuple) and len(creases) == 2:
             edges, sharpness = to_numpy(creases[0], "creases"), as_floats(creases[1], "sharpness of creases", None)
@@ -97,13 +120,14 @@ class Mesh:
     def _check_count(self, array: Optional[Array], indices: Optional[Array], name: str) -> None:
         if array is None:
             return
-        counted, label = (array, name) if indices is None else (indices, f"{name[:-1]}_indices")
+        label = name if indices is None else f"{name[:-1]}_indices" if name.endswith("s") else f"indices of {name}"
+        counted = array if indices is None else indices
         if len(counted) != len(self.corners):
             raise ValueError(f"{label}: {len(counted)}, and there are {len(self.corners)} corners of faces")
 
-    def _collect(self) -> dict[str, Array]:
+    def _collect(self) -> dict[str, Any]:
         """The arrays that there are, checked: they may have been changed."""
-        arrays: dict[str, Array] = {"positions": as_floats(self.positions, "positions", 3)}
+        arrays: dict[str, Any] = {"positions": as_floats(self.positions, "positions", 3)}
         check_finite(arrays["positions"], "positions")
         arrays["sizes"], corners = split_faces((to_numpy(self.sizes, "sizes"), to_numpy(self.corners, "corners")))
         arrays["corners"] = as_indices(corners, "faces", len(self.positions))
@@ -117,6 +141,10 @@ class Mesh:
             if indices is not None:
                 arrays[f"{name[:-1]}_indices"] = as_indices(indices, f"{name[:-1]}_indices", len(values))
             self._check_count(arrays[name], indices, name)
+        if self.uv_set:
+            arrays["uv_set"] = int(self.uv_set)
+        if self.further_uvs:
+            arrays["further_uvs"] = self._read_further_uvs(self.further_uvs)
         if self.creases is not None and self.sharpness is not None:
             arrays["creases"] = self._check_edges(self.creases)
             arrays["sharpness"] = as_floats(self.sharpness, "sharpness of creases", None)
@@ -126,7 +154,7 @@ class Mesh:
         return arrays
 
     @classmethod
-    def _from_arrays(cls, arrays: Mapping[str, Array]) -> Mesh:
+    def _from_arrays(cls, arrays: Mapping[str, Any]) -> Mesh:
         """Of arrays that the library made."""
         mesh = cls.__new__(cls)
         mesh.positions = arrays.get("positions", np.zeros((0, 3), np.float32))
@@ -134,20 +162,23 @@ class Mesh:
         mesh.corners = arrays.get("corners", np.zeros(0, np.uint32))
         for name in ("uvs", "uv_indices", "normals", "normal_indices", "tangents", "creases", "sharpness"):
             setattr(mesh, name, arrays.get(name))
+        mesh.uv_set = arrays.get("uv_set", 0)
+        mesh.further_uvs = dict(arrays.get("further_uvs", {}))
         mesh.subdivision = None
         mesh.warnings = []
         return mesh
 
     @classmethod
-    def load(cls, file: Union[str, os.PathLike[str]], uv_set: int = 0) -> Mesh:
-        """Reads .obj, .ply, .gltf, .glb or .fbx. uv_set: of glTF and FBX, from 0."""
-        arrays, warnings = _relief.load_mesh(os.fspath(file), uv_set)
+    def load(cls, file: Union[str, os.PathLike[str]], uv_set: int = 0, further_uv_sets: Sequence[int] = ()) -> Mesh:
+        """Reads .obj, .ply, .gltf, .glb or .fbx. uv_set: of glTF and FBX, from 0. further_uv_sets: those of them that are
+        there become further_uvs."""
+        arrays, warnings = _relief.load_mesh(os.fspath(file), uv_set, list(further_uv_sets))
         mesh = cls._from_arrays(arrays)
         mesh.warnings = warnings
         return mesh
 
     def save(self, file: Union[str, os.PathLike[str]]) -> None:
-        """Writes .obj or binary .ply: faces, and uvs; the file is replaced atomically."""
+        """Writes .obj or binary .ply: faces, and uvs of the first set; the file is replaced atomically."""
         _relief.write_mesh(self._collect(), os.fspath(file))
 
     @property

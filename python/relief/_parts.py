@@ -35,7 +35,7 @@ class Light(Part):
 class Material(Part):
     """Material(base_color=(r, g, b), specular_roughness=0.5, base_metalness=0, ...): names of OpenPBR 1.1.
 
-    An input may be a number or colour, an array, or {"file": array or name, "factor": ..., "wrap": ...}."""
+    An input may be a number or colour, an array, or {"file": array or name, "factor": ..., "wrap": ..., "uv_set": ...}."""
 
 
 class Environment(Part):

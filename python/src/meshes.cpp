@@ -34,7 +34,23 @@ struct GivenArrays {
           normal_indices(find<Array1<uint32_t>>(arrays, "normal_indices")),
           tangents(find<Array2<float>>(arrays, "tangents")),
           creases(find<Array2<uint32_t>>(arrays, "creases")),
-          sharpness(find<Array1<float>>(arrays, "sharpness")) {}
+          sharpness(find<Array1<float>>(arrays, "sharpness")),
+          uv_set(find<int>(arrays, "uv_set").value_or(0)) {
+        if (!arrays.contains("further_uvs")) return;
+        for (const auto& [number, set] : nb::cast<nb::dict>(arrays["further_uvs"])) {
+            const auto values = nb::cast<nb::tuple>(set);
+            Set& given = further_uvs.emplace_back();
+            given.number = nb::cast<int>(number);
+            given.uvs = nb::cast<Array2<float>>(values[0]);
+            if (!values[1].is_none()) given.indices = nb::cast<Array1<uint32_t>>(values[1]);
+        }
+    }
+
+    struct Set {
+        int number = 0;
+        std::optional<Array2<float>> uvs;
+        std::optional<Array1<uint32_t>> indices;
+    };
 
     std::optional<Array2<float>> positions;
     std::optional<Array1<uint32_t>> sizes, corners;
@@ -45,32 +61,44 @@ struct GivenArrays {
     std::optional<Array2<float>> tangents;
     std::optional<Array2<uint32_t>> creases;
     std::optional<Array1<float>> sharpness;
+    int uv_set;
+    std::vector<Set> further_uvs;
 };
 
 template <class Element, class Array> std::vector<Element> copy(const std::optional<Array>& array) {
     return array ? copy_array<Element>(*array) : std::vector<Element>();
 }
 
-/// One uv a corner to uvs with indices. Only those of one position are compared, so that islands which happen
-/// to have a uv in common stay apart.
-void weld_uvs(std::span<const Vec2f> corner_uvs, Mesh& mesh) {
+/// One uv a corner of a mesh to uvs with indices. Only those of one position are compared, so that islands
+/// which happen to have a uv in common stay apart.
+void weld_uvs(std::span<const Vec2f> corner_uvs, const Mesh& mesh, std::vector<Vec2f>& uvs,
+              std::vector<uint32_t>& indices) {
     std::vector<uint32_t> newest(mesh.positions.size(), kNoIndex), older;
-    mesh.uv_indices.resize(corner_uvs.size());
+    indices.resize(corner_uvs.size());
     for (size_t corner = 0; corner < corner_uvs.size(); ++corner) {
         // Python has checked them, but another of its threads may have written to the array since.
         if (mesh.position_indices.at(corner) >= newest.size())
             throw Error(ErrorKind::bad_input, {"an index is out of range", "faces", ""});
         uint32_t& head = newest[mesh.position_indices[corner]];
         uint32_t found = head;
-        while (found != kNoIndex && !(mesh.uvs[found] == corner_uvs[corner])) found = older[found];
+        while (found != kNoIndex && !(uvs[found] == corner_uvs[corner])) found = older[found];
         if (found == kNoIndex) {
-            found = uint32_t(mesh.uvs.size());
-            mesh.uvs.push_back(corner_uvs[corner]);
+            found = uint32_t(uvs.size());
+            uvs.push_back(corner_uvs[corner]);
             older.push_back(head);
             head = found;
         }
-        mesh.uv_indices[corner] = found;
+        indices[corner] = found;
     }
+}
+
+/// `given`: one uv a corner where there are no indices yet.
+void set_uvs(std::vector<Vec2f> given, const Mesh& mesh, std::vector<Vec2f>& uvs,
+             std::vector<uint32_t>& indices) {
+    if (!given.empty() && indices.empty())
+        weld_uvs(given, mesh, uvs, indices);
+    else
+        uvs = std::move(given);
 }
 
 std::vector<uint32_t> count_up(size_t count) {
@@ -89,12 +117,15 @@ Mesh make_mesh(const nb::dict& arrays) {
     mesh.positions = copy<Vec3f>(given.positions);
     mesh.face_sizes = copy<uint32_t>(given.sizes);
     mesh.position_indices = copy<uint32_t>(given.corners);
-    std::vector<Vec2f> uvs = copy<Vec2f>(given.uvs);
+    mesh.uv_set = given.uv_set;
     mesh.uv_indices = copy<uint32_t>(given.uv_indices);
-    if (!uvs.empty() && mesh.uv_indices.empty())
-        weld_uvs(uvs, mesh);
-    else
-        mesh.uvs = std::move(uvs);
+    set_uvs(copy<Vec2f>(given.uvs), mesh, mesh.uvs, mesh.uv_indices);
+    for (const GivenArrays::Set& further : given.further_uvs) {
+        UvSet& set = mesh.further_uvs.emplace_back();
+        set.number = further.number;
+        set.indices = copy<uint32_t>(further.indices);
+        set_uvs(copy<Vec2f>(further.uvs), mesh, set.uvs, set.indices);
+    }
     mesh.normals = copy<Vec3f>(given.normals);
     mesh.normal_indices = copy<uint32_t>(given.normal_indices);
     if (!mesh.normals.empty() && mesh.normal_indices.empty())
@@ -125,6 +156,15 @@ nb::dict make_mesh_arrays(Mesh&& mesh) {
     add("normals", std::move(mesh.normals), 3, float());
     add("normal_indices", std::move(mesh.normal_indices), 1, uint32_t());
     add("tangents", std::move(mesh.tangents), 4, float());
+    if (mesh.uv_set != 0) arrays["uv_set"] = mesh.uv_set;
+    nb::dict further_uvs;
+    for (UvSet& set : mesh.further_uvs) {
+        const size_t count = set.uvs.size(), corners = set.indices.size();
+        further_uvs[nb::int_(set.number)] =
+            nb::make_tuple(make_array<float>(std::move(set.uvs), {count, 2}),
+                           make_array<uint32_t>(std::move(set.indices), {corners}));
+    }
+    if (further_uvs.size() > 0) arrays["further_uvs"] = further_uvs;
     std::vector<std::array<uint32_t, 2>> edges;
     std::vector<float> sharpness;
     for (const Crease& crease : mesh.creases) {

@@ -123,13 +123,14 @@ nb::dict displace(const ParsedScene& parsed, int level) {
 }
 
 /// Arrays, and warnings.
-nb::tuple load_mesh_arrays(const std::string& file, int uv_set) {
+nb::tuple load_mesh_arrays(const std::string& file, int uv_set, std::vector<int> further_uv_sets) {
     Mesh mesh;
     std::vector<std::string> warnings;
     {
         const GateVisit visit;
         const nb::gil_scoped_release release;
-        mesh = load_mesh(file, {.uv_set = uv_set, .reader = {}}, warnings);
+        mesh = load_mesh(
+            file, {.uv_set = uv_set, .further_uv_sets = std::move(further_uv_sets), .reader = {}}, warnings);
     }
     return nb::make_tuple(make_mesh_arrays(std::move(mesh)), warnings);
 }
@@ -182,7 +183,8 @@ void add_scenes(nb::module_& module) {
         "name_frame",
         [](const std::string& pattern, int frame) { return name_frame(pattern, frame).string(); },
         nb::arg("pattern"), nb::arg("frame"));
-    module.def("load_mesh", &load_mesh_arrays, nb::arg("file"), nb::arg("uv_set") = 0);
+    module.def("load_mesh", &load_mesh_arrays, nb::arg("file"), nb::arg("uv_set") = 0,
+               nb::arg("further_uv_sets") = std::vector<int>());
     module.def("write_mesh", &write_mesh_arrays, nb::arg("arrays"), nb::arg("file"));
     module.def(
         "is_mesh_file", [](const std::string& file) { return is_mesh_file(file); }, nb::arg("file"));
