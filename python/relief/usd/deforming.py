@@ -18,9 +18,9 @@ TOPOLOGY = ("faceVertexCounts", "faceVertexIndices", "holeIndices", "orientation
 MOVING = ("points", "normals", "primvars:normals")
 
 
-def write_moving_mesh(context: Context, prim: Usd.Prim, name: str, make: typing.Callable) -> dict | None:
+def write_moving_mesh(context: Context, prim: Usd.Prim, name: str, make: typing.Callable, uv_sets: int = 1) -> dict | None:
     """Writes the mesh at each frame and returns its part of a scene; None where it does not change or stays as it is.
-    `make()`: the mesh at the time of the context."""
+    `make()`: the mesh at the time of the context, with so many uv sets."""
     if context.range is None or not prim.IsA(UsdGeom.Mesh):
         return None
     attributes = [prim.GetAttribute(key) for key in MOVING if prim.HasAttribute(key)]
@@ -30,6 +30,10 @@ def write_moving_mesh(context: Context, prim: Usd.Prim, name: str, make: typing.
     where = f"as of frame {context.time.GetValue():g}"
     if any(prim.GetAttribute(key).ValueMightBeTimeVarying() for key in TOPOLOGY if prim.HasAttribute(key)):
         context.report.add(prim, f"its faces change with time: it stays {where}")
+        return None
+    if uv_sets > 1:
+        context.report.add(prim, f"points change with time, and files a frame hold one uv set: they stay {where}, as its "
+                                 "textures lie on several")
         return None
     if context.options.folder is None:
         context.report.add(prim, f"points change with time, and there is no folder for a file a frame: they stay {where}")

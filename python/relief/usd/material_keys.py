@@ -11,7 +11,8 @@ class KeySetter:
     """Collects the keys of one material."""
 
     def __init__(self, network: Network) -> None:
-        self.network, self.keys, self.uvs = network, {}, []
+        self.network, self.keys = network, {}
+        self.placed: list = []  # (keys of a texture, name of its uvs or None)
 
     def emits(self) -> bool:
         emission = self.keys.get("emission")
@@ -69,8 +70,8 @@ class KeySetter:
 
     def place(self, texture: Texture) -> dict:
         """Where a texture lies: the keys that all textures have."""
-        self.use_uvs(texture)
         keys = {"file": texture.file, **texture.keys}
+        self.placed.append((keys, texture.place.uvs))
         if texture.wrap != "repeat" and not any(token in texture.file for token in ("<UDIM>", "<UVTILE>", "<uvtile>")):
             keys["wrap"] = texture.wrap
         if not np.array_equal(texture.place.scale, [1, 1]):
@@ -79,13 +80,23 @@ class KeySetter:
             keys["uv_offset"] = [float(x) for x in texture.place.offset]
         return keys
 
-    def use_uvs(self, texture: Texture) -> None:
-        """Materials of Relief have one uv set: that of the first texture."""
-        name = texture.place.uvs
-        if name is not None and name not in self.uvs:
-            self.uvs.append(name)
-            if len(self.uvs) == 2:
-                self.network.note(f"textures on uvs {name} are read on {self.uvs[0]}")
+    def number_uv_sets(self, displaced: str | None) -> tuple:
+        """(uvs of the mesh's own, those of its further uv sets in the order of their numbers from 1 on). The mesh's own are
+        those of the displacement, else of the normal map, else of the first texture."""
+        normal = self.keys.get("geometry_normal")
+        names = [name for _, name in self.placed if name is not None]
+        own = displaced or next((name for keys, name in self.placed if keys is normal), None) or next(iter(names), None)
+        further: list = []
+        for keys, name in self.placed:
+            if name is None or name == own or not any(keys is value for value in self.keys.values()):
+                continue
+            if keys is normal:
+                self.network.note(f"its normal map on uvs {name} is read on {own}, as its displacement is")
+                continue
+            if name not in further:
+                further.append(name)
+            keys["uv_set"] = further.index(name) + 1
+        return own, tuple(further)
 
     def normal(self, value) -> None:
         """A texture of directions, as scale and bias make them of texels in [0, 1]."""

@@ -23,10 +23,11 @@ SURFACES = {"UsdPreviewSurface": read_preview_surface, "ND_UsdPreviewSurface_sur
 @dataclasses.dataclass
 class ReadMaterial:
     name: str
-    uvs: str | None           # the uv set of its textures
+    uvs: str | None           # the uvs of its displacement and of textures without a uv_set
     displacement: dict | None # keys of the scene file
     emits: bool
     needs_uvs: bool           # it has a normal map or is anisotropic
+    further_uvs: tuple = ()   # the uvs of its textures whose uv_set is 1, 2 and so on
 
 
 def needs_uvs(keys: dict) -> bool:
@@ -76,13 +77,11 @@ class MaterialReader:
             reader(network, shader, setter)
         displacement = read_displacement(network, material)
         self.finish(prim, setter)
+        uvs, further_uvs = setter.number_uv_sets(displacement.pop("uvs", None) if displacement is not None else None)
         self.context.scene.materials[name] = relief.Material(**setter.keys)
         if material.ComputeVolumeSource()[0]:
             network.note("its volume is not taken over")
-        uvs = setter.uvs[0] if setter.uvs else None
-        if displacement is not None:
-            uvs = displacement.pop("uvs", None) or uvs
-        return ReadMaterial(name, uvs, displacement, setter.emits(), needs_uvs(setter.keys))
+        return ReadMaterial(name, uvs, displacement, setter.emits(), needs_uvs(setter.keys), further_uvs)
 
     def find_surface(self, material: UsdShade.Material):
         """MaterialX's surface before the one for all renderers."""

@@ -30,7 +30,7 @@ class RawMesh:
     creases: np.ndarray | None = None # (K, 3)
     subdivision: dict | None = None
     counts: tuple = (0, 0, 0)         # of points, faces and corners as the file has them
-    uvs: tuple | None = None          # in place of primvars: as normals
+    uvs: dict | None = None           # in place of primvars: by their names, each as normals
 
     def is_subdivided(self) -> bool:
         return self.subdivision is not None
@@ -176,19 +176,46 @@ def read_uvs(context: Context, prim: Usd.Prim, name: str | None, counts: tuple):
     return check_values(context, prim, f"uvs {name}", (values, primvar.GetInterpolation(), indices), counts)
 
 
+def find_uvs(context: Context, raw: RawMesh, name: str | None):
+    """As read_uvs, of any mesh."""
+    return read_uvs(context, raw.prim, name, raw.counts) if raw.uvs is None else raw.uvs.get(name)
+
+
+def name_uvs(context: Context, raw: RawMesh, wanted: str | None) -> str | None:
+    """As choose_uvs, of any mesh."""
+    if raw.uvs is None:
+        return choose_uvs(context, raw.prim, wanted)
+    return wanted if wanted in raw.uvs else next(iter(raw.uvs), None)
+
+
 def index_values(faces: Faces, found: tuple) -> np.ndarray:
     chosen = index_corners(faces, found[1])
     return chosen if found[2] is None else found[2][chosen]
 
 
-def make_mesh(context: Context, raw: RawMesh, part: Faces, uv_name: str | None, with_normals: bool) -> relief.Mesh:
-    """One part of a mesh, or the whole. `with_normals`: one normal for each point of the whole mesh."""
+def make_further_uvs(context: Context, raw: RawMesh, part: Faces, names: tuple) -> dict:
+    """Of the names, by numbers from 1 on; a part without any uvs has them at (0, 0)."""
+    found = {}
+    for number, name in enumerate(names, 1):
+        uvs = find_uvs(context, raw, name)
+        if uvs is None:
+            found[number] = (np.zeros((1, 2), np.float32), np.zeros(len(part.points), np.uint32))
+        else:
+            found[number] = (uvs[0].astype(np.float32), index_values(part, uvs).astype(np.uint32).reshape(-1))
+    return found
+
+
+def make_mesh(context: Context, raw: RawMesh, part: Faces, uv_names: tuple, with_normals: bool) -> relief.Mesh:
+    """One part of a mesh, or the whole. `uv_names`: of its own uvs, then of further sets. `with_normals`: one normal for each
+    point of the whole mesh."""
     keys, subdivision = {}, raw.subdivision
-    uvs = raw.uvs or read_uvs(context, raw.prim, uv_name, raw.counts)
+    uvs = find_uvs(context, raw, uv_names[0])
     if uvs is not None:
         keys.update(uvs=uvs[0].astype(np.float32), uv_indices=index_values(part, uvs).astype(np.uint32))
         if subdivision is not None and uvs[1] == "varying":
             subdivision = dict(subdivision, uv="linear")
+    if len(uv_names) > 1:
+        keys["further_uvs"] = make_further_uvs(context, raw, part, uv_names[1:])
     if raw.normals is not None and not with_normals:
         keys.update(normals=raw.normals[0].astype(np.float32), normal_indices=index_values(part, raw.normals).astype(np.uint32))
     elif with_normals and subdivision is None:
@@ -217,10 +244,12 @@ def renumber_creases(creases: np.ndarray | None, used: np.ndarray) -> np.ndarray
     return found if len(found) else None
 
 
-def refine_mesh(context: Context, raw: RawMesh, wanted_uvs: str | None) -> RawMesh:
-    """A subdivided mesh as one of polygons on its limit surface."""
-    uvs = raw.uvs or read_uvs(context, raw.prim, choose_uvs(context, raw.prim, wanted_uvs), raw.counts)
-    corner_uvs = np.zeros((len(raw.faces.points), 2)) if uvs is None else uvs[0][index_values(raw.faces, uvs)]
+def refine_mesh(context: Context, raw: RawMesh, wanted_uvs: tuple) -> RawMesh:
+    """A subdivided mesh as one of polygons on its limit surface, with uvs of these names."""
+    names = list(dict.fromkeys(name_uvs(context, raw, name) for name in wanted_uvs))
+    sets = {name: uvs for name in names if (uvs := find_uvs(context, raw, name)) is not None}
+    columns = [uvs[0][index_values(raw.faces, uvs)].reshape(-1, 2) for uvs in sets.values()]
+    corner_uvs = np.concatenate([np.zeros((len(raw.faces.points), 0)), *columns], 1)
     rows = np.zeros((0, 3)) if raw.creases is None else raw.creases
     is_edge = rows[:, 0] != rows[:, 1]
     point_sharpness = np.zeros(len(raw.positions))
@@ -237,6 +266,5 @@ def refine_mesh(context: Context, raw: RawMesh, wanted_uvs: str | None) -> RawMe
     refined = RawMesh(raw.prim, fine.points, faces, counts=(len(fine.points), len(fine.sizes), len(fine.corners)))
     if cage.is_smooth:
         refined.normals = (compute_creased_normals(fine.points, faces), "faceVarying", None)
-    if uvs is not None:
-        refined.uvs = (fine.uvs, "faceVarying", None)
+    refined.uvs = {name: (fine.uvs[:, 2 * k:2 * k + 2], "faceVarying", None) for k, name in enumerate(sets)}
     return refined

@@ -15,7 +15,7 @@ from .displacements import find_noted
 from .instances import write_instances
 from .manifold import is_manifold
 from .materials import MaterialReader, ReadMaterial
-from .meshes import RawMesh, choose_uvs, make_mesh, read_mesh, refine_mesh
+from .meshes import RawMesh, make_mesh, name_uvs, read_mesh, refine_mesh
 from .motion import find_carrier
 from .shapes import can_read_shape, read_shape
 from .walk import Item
@@ -88,7 +88,8 @@ class ObjectReader:
     def refine(self, key: str, raw: RawMesh, parts: list) -> RawMesh:
         """Refined as a whole, so that parts meet; the parts' faces become those of the finer mesh."""
         if key not in self.refined:
-            wanted = next((part.material.uvs for part in parts if part.material and part.material.uvs), None)
+            wanted = tuple(name for part in parts if part.material
+                           for name in (part.material.uvs, *part.material.further_uvs) if name) or (None,)
             self.refined[key] = refine_mesh(self.context, raw, wanted)
             self.refined_uvs[key] = wanted
         fine = self.refined[key]
@@ -106,10 +107,10 @@ class ObjectReader:
     def add_part(self, item: Item, raw: RawMesh, part: Part, is_split: bool) -> None:
         keys = {}
         displaced = self.find_displacement(item.prim, part)
-        wanted = part.material.uvs if part.material else None
+        wanted = (part.material.uvs, *part.material.further_uvs) if part.material else (None,)
         if displaced is not None:
             displaced = dict(displaced)
-            wanted = displaced.pop("uvs", None) or wanted
+            wanted = (displaced.pop("uvs", None) or wanted[0], *wanted[1:])
             if is_split:
                 self.keep_closed(part, displaced)
         mesh_name = self.find_mesh(raw, part, wanted, is_split and displaced is not None)
@@ -159,9 +160,10 @@ class ObjectReader:
             self.displacements[identity] = name
         return self.displacements[identity]
 
-    def find_mesh(self, raw: RawMesh, part: Part, wanted: str | None, with_normals: bool) -> str:
-        """The name of a part's mesh in the scene; one mesh for all of its instances."""
-        uvs = None if raw.uvs else choose_uvs(self.context, raw.prim, wanted)
+    def find_mesh(self, raw: RawMesh, part: Part, wanted: tuple, with_normals: bool) -> str:
+        """The name of a part's mesh in the scene; one mesh for all of its instances. `wanted`: names of its own uvs and of
+        further sets."""
+        uvs = tuple(name_uvs(self.context, raw, name) for name in wanted)
         key = (find_key(raw.prim), uvs, with_normals, part.faces.numbers.tobytes())
         if key not in self.meshes:
             mesh = make_mesh(self.context, raw, part.faces, uvs, with_normals)
@@ -172,13 +174,14 @@ class ObjectReader:
                 number += 1
                 name = f"{base}_{number}"
             is_fine = raw is self.refined.get(find_key(raw.prim))
-            moving = write_moving_mesh(self.context, raw.prim, name, lambda: self.remake(raw, part, uvs, with_normals, is_fine))
+            moving = write_moving_mesh(self.context, raw.prim, name, lambda: self.remake(raw, part, uvs, with_normals, is_fine),
+                                       len(uvs))
             self.context.scene.meshes[name] = moving or mesh
             self.meshes[key] = name
             self.has_uvs[name] = mesh.uvs is not None and len(mesh.uvs) > 0
         return self.meshes[key]
 
-    def remake(self, raw: RawMesh, part: Part, uvs: str | None, with_normals: bool, is_fine: bool) -> relief.Mesh:
+    def remake(self, raw: RawMesh, part: Part, uvs: tuple, with_normals: bool, is_fine: bool) -> relief.Mesh:
         """A part at another time of the context."""
         again = read_mesh(self.context, raw.prim)
         if is_fine:

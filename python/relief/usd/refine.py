@@ -16,7 +16,7 @@ class Cage:
     points: np.ndarray   # (N, 3)
     sizes: np.ndarray    # (F,)
     corners: np.ndarray  # (C,)
-    uvs: np.ndarray      # (C, 2), one a corner
+    uvs: np.ndarray      # (C, 2 K), K uvs a corner
     faces: np.ndarray    # (F,) the face of the first cage that each comes from
     edges: np.ndarray    # (K, 2) creases
     edge_sharpness: np.ndarray
@@ -121,7 +121,7 @@ def refine_once(cage: Cage) -> Cage:
     rest = np.tile(fade(edges.sharpness[is_crease]), 2)
     point_sharpness = np.concatenate([fade(cage.point_sharpness), np.zeros(len(middles) + face_count)])
     return dataclasses.replace(cage, points=np.concatenate([points, middles, face_points]), sizes=np.full(len(quads), 4),
-                               corners=quads.reshape(-1), uvs=uvs.reshape(-1, 2), faces=cage.faces[numbers], edges=children,
+                               corners=quads.reshape(-1), uvs=uvs.reshape(4 * len(quads), cage.uvs.shape[1]), faces=cage.faces[numbers], edges=children,
                                edge_sharpness=rest, point_sharpness=point_sharpness)
 
 

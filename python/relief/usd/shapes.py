@@ -25,7 +25,7 @@ def read_shape(context: Context, prim: Usd.Prim) -> RawMesh:
     faces = make_faces(np.full(len(quads), 4), quads.reshape(-1), get("orientation", "") == "leftHanded", np.array([], np.int64))
     raw = RawMesh(prim, np.roll(points, shift, axis=1), faces, counts=(len(points), len(quads), quads.size))
     raw.normals = (np.roll(normals, shift, axis=1), "vertex" if len(normals) == len(points) else "faceVarying", None)
-    raw.uvs = (uvs, "vertex", None)
+    raw.uvs = {None: (uvs, "vertex", None)}
     if prim.GetTypeName() not in ("Cube", "Plane"):
         context.report.add(prim, f"{prim.GetTypeName()} is a mesh of {len(quads)} faces")
     return raw
