@@ -18,12 +18,14 @@ UNTEXTURED = {"ior", "coat_ior"}
 
 
 class ExportedMaterial(NamedTuple):
-    """Names in the scene, and the place that the uvs of its meshes are to have."""
+    """Names in the scene, the place that the uvs of its meshes are to have, and the uv maps of their further sets, which are
+    1, 2 and so on."""
     material: str
     displacement: str | None = None
     base: Place = Place()
     is_tangent: bool = False
     is_world_height: bool = False
+    further: tuple = ()
 
 
 class MaterialExport:
@@ -60,11 +62,13 @@ class MaterialExport:
         base = Place(base.uv_map, base.scale, base.offset)
         if not displacement:
             base = Place(base.uv_map)
-        self._scene.materials[name] = self._write(keys, TextureWriter(node_values.texels, report, base), report)
+        writer = TextureWriter(node_values.texels, report, base)
+        self._scene.materials[name] = self._write(keys, writer, report)
+        further = tuple(writer.further)
         if displacement is None:
-            return ExportedMaterial(name, None, base)
+            return ExportedMaterial(name, None, base, further=further)
         self._scene.displacements[name] = displacement.write(node_values.texels)
-        return ExportedMaterial(name, name, base, displacement.is_tangent, displacement.is_world_height)
+        return ExportedMaterial(name, name, base, displacement.is_tangent, displacement.is_world_height, further)
 
     def _read(self, material, node_values, report):
         """(keys of the surface, displacement or None)."""
@@ -88,10 +92,10 @@ class MaterialExport:
 
     @staticmethod
     def _choose_place(keys):
-        """The place of the first texture, colours first."""
+        """The place of the normal map, which lies on the uvs of the mesh alone, else of the first texture, colours first."""
         found = [v for k, v in sorted(keys.items(), key=lambda item: item[0] != "base_color") if isinstance(v, Textured)]
         if "normal" in keys:
-            found.append(keys["normal"][0])
+            found.insert(0, keys["normal"][0])
         return found[0].place if found else Place()
 
     def _write(self, keys, writer, report):

@@ -13,6 +13,7 @@ class MeshArrays:
     face_materials: np.ndarray    # (faces,)
     corner_normals: np.ndarray    # (corners, 3)
     uvs: np.ndarray | None = None  # (corners, 2)
+    further_uvs: tuple = ()        # the same of each further uv map
 
 
 def read(items, attribute, width, dtype=np.float32):
@@ -27,15 +28,22 @@ def find_uv_layer(mesh, name):
     return layer or next((layer for layer in mesh.uv_layers if layer.active_render), None)
 
 
-def read_mesh(mesh, uv_name=""):
-    """Arrays of a bpy.types.Mesh."""
-    layer = find_uv_layer(mesh, uv_name)
+def read_uvs(mesh, name):
+    """(corners, 2) of the uv map of a name, else of the one that renders, else None."""
+    layer = find_uv_layer(mesh, name)
+    return read(layer.uv, "vector", 2) if layer and len(layer.uv) else None
+
+
+def read_mesh(mesh, uv_name="", further=()):
+    """Arrays of a bpy.types.Mesh, with further uv maps; those of a mesh without any are 0."""
+    others = [read_uvs(mesh, name) for name in further]
     return MeshArrays(
         positions=read(mesh.vertices, "co", 3), sizes=read(mesh.polygons, "loop_total", 1, np.int32),
         corners=read(mesh.loops, "vertex_index", 1, np.int32),
         face_materials=read(mesh.polygons, "material_index", 1, np.int32),
         corner_normals=read(mesh.corner_normals, "vector", 3),
-        uvs=read(layer.uv, "vector", 2) if layer and len(layer.uv) else None)
+        uvs=read_uvs(mesh, uv_name),
+        further_uvs=tuple(np.zeros((len(mesh.loops), 2), np.float32) if uvs is None else uvs for uvs in others))
 
 
 def read_float_attribute(mesh, name, domain):
@@ -124,4 +132,5 @@ def select_faces(arrays, is_chosen):
     points, corners = np.unique(arrays.corners[corner_mask], return_inverse=True)
     uvs = arrays.uvs[corner_mask] if arrays.uvs is not None else None
     return MeshArrays(arrays.positions[points], arrays.sizes[is_chosen], corners.reshape(-1).astype(np.int32),
-                      arrays.face_materials[is_chosen], arrays.corner_normals[corner_mask], uvs), corner_mask
+                      arrays.face_materials[is_chosen], arrays.corner_normals[corner_mask], uvs,
+                      tuple(further[corner_mask] for further in arrays.further_uvs)), corner_mask

@@ -80,7 +80,7 @@ class MeshExport:
                 report("several materials on an adaptive subdivision: it is subdivided by its Levels instead")
             return None
         material = next(iter(used.values()))
-        arrays = mesh_arrays.read_mesh(cage, material.base.uv_map)
+        arrays = mesh_arrays.read_mesh(cage, material.base.uv_map, material.further)
         if modifier.subdivision_type != "CATMULL_CLARK":
             return [self._add(evaluated, arrays, material)]
         if not topology.can_be_subdivided(arrays):
@@ -97,12 +97,12 @@ class MeshExport:
         used = self._used(evaluated, mesh)
         if len(used) == 1:
             material = next(iter(used.values()))
-            return [self._add(evaluated, mesh_arrays.read_mesh(mesh, material.base.uv_map), material)]
+            return [self._add(evaluated, mesh_arrays.read_mesh(mesh, material.base.uv_map, material.further), material)]
         return [self._add_part(evaluated, mesh, slot, material, max(used)) for slot, material in used.items()]
 
     def _add_part(self, evaluated, mesh, slot, material, last):
         """The faces of one material; displaced ones take their frames from the whole mesh, so that borders meet."""
-        whole = mesh_arrays.read_mesh(mesh, material.base.uv_map)
+        whole = mesh_arrays.read_mesh(mesh, material.base.uv_map, material.further)
         part, mask = mesh_arrays.select_faces(whole, np.minimum(whole.face_materials, last) == slot)
         tangents = None
         if material.is_tangent:
@@ -134,6 +134,9 @@ class MeshExport:
             uvs, uv_indices = mesh_arrays.index_equal(arrays.corners, self._place_uvs(arrays.uvs, material.base))
         elif material.displacement is not None:
             self._report.add("object", evaluated.original.name_full, "it has no uv map: it is not displaced")
+        if arrays.further_uvs:
+            keys["further_uvs"] = {number: mesh_arrays.index_equal(arrays.corners, further)
+                                   for number, further in enumerate(arrays.further_uvs, 1)}
         normals, normal_indices = mesh_arrays.index_equal(arrays.corners, arrays.corner_normals)
         self._scene.meshes[name] = relief.Mesh(
             arrays.positions, (arrays.sizes, arrays.corners), uvs=uvs, uv_indices=uv_indices, normals=normals,

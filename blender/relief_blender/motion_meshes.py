@@ -83,7 +83,8 @@ class MeshMotion:
     def bake(self, entry, matrices):
         """Lets the mesh of an object of the scene do what its transform cannot. matrices: {step: 4x4}. Whether it can."""
         steps = range(0, self._shutter.step_count + 1, self._shutter.stride)
-        if "displacement" in entry or any(s not in matrices or np.linalg.det(matrices[s][:3, :3]) <= 0 for s in steps):
+        if ("displacement" in entry or self._exporter.scene.meshes[entry["mesh"]].further_uvs
+                or any(s not in matrices or np.linalg.det(matrices[s][:3, :3]) <= 0 for s in steps)):
             return False
         meshes = self._find_sequence(entry["mesh"]) or [self._exporter.scene.meshes[entry["mesh"]]] * len(steps)
         name = f"{entry['mesh']} in place {len(self._baked)}"
@@ -118,6 +119,8 @@ class MeshMotion:
             tell("it is not there all the time that the shutter is open: it does not deform meanwhile")
         elif not all(mesh is not None and has_same_faces(base, mesh) for mesh in meshes):
             tell("its faces or uvs are others from one step to the next: it does not deform meanwhile")
+        elif base.further_uvs:
+            tell("its textures lie on several uv maps: it does not deform meanwhile")
         elif base.tangents is not None:
             tell("it has several materials that displace it in tangent space: it does not deform meanwhile")
         else:

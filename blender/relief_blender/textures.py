@@ -2,14 +2,16 @@
 import numpy as np
 
 from . import images
-from .values import Constant
+from .values import Constant, Place
 
 
 class TextureWriter:
-    """Makes the values of keys. `base` is the place of the mesh's own uvs: see MaterialExport."""
+    """Makes the values of keys. `base` is the place of the mesh's own uvs: see MaterialExport. `further`: the uv maps of
+    textures that lie on others, whose uv sets are 1, 2 and so on."""
 
     def __init__(self, texels, report, base):
         self._texels, self._report, self._base = texels, report, base
+        self.further = []
 
     def color(self, value, label, least=0.0, most=1.0):
         if isinstance(value, Constant):
@@ -22,7 +24,7 @@ class TextureWriter:
         return self._texture(value, label, most, is_number=True)
 
     def normal(self, value, scale):
-        keys = self._place(value, "normal map")
+        keys = self._place(value, "normal map", has_own_set=False)
         keys["file"] = self._file(value, np.ones(3)) or self._arrays(value, is_number=False)
         keys["scale"] = float(np.clip(scale, 0, 1000))
         return keys
@@ -62,10 +64,15 @@ class TextureWriter:
                  for n, t in tiles.items()}
         return tiles if list(tiles) != [1001] else tiles[1001]
 
-    def _place(self, value, label):
+    def _place(self, value, label, has_own_set=True):
         place, base = value.place, self._base
         keys = {}
-        if place.uv_map != base.uv_map:
+        if place.uv_map != base.uv_map and has_own_set:
+            if place.uv_map not in self.further:
+                self.further.append(place.uv_map)
+            keys["uv_set"] = self.further.index(place.uv_map) + 1
+            base = Place()  # further sets are as the mesh of Blender has them
+        elif place.uv_map != base.uv_map:
             self._report(f'{label} lies on the uv map "{place.uv_map or "that renders"}": '
                          f'"{base.uv_map or "that renders"}" is used')
         scale = [p / b for p, b in zip(place.scale, base.scale)]

@@ -89,6 +89,30 @@ class Displacement(BlenderTest):
         subdivide(ob, levels=2)
         self.compare()
 
+    def test_a_color_on_another_uv_map(self):
+        """Seen from above, so that pixels of both look at the same places."""
+        ob, (v, u) = make_grid(8), np.mgrid[0:64, 0:64] / 64
+        layer, uvs = ob.data.uv_layers.new(name="second"), np.empty(2 * len(ob.data.loops), np.float32)
+        ob.data.uv_layers[0].uv.foreach_get("vector", uvs)
+        layer.uv.foreach_set("vector", 0.5 + 0.4 * uvs.reshape(-1, 2)[:, ::-1].reshape(-1))
+        material = make_material(ob, Roughness=1.0, Specular_IOR_Level=0.0)
+        displace(material, make_image("hook", make_hook()), scale=0.3)
+        tree = material.node_tree
+        texture, uv = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeUVMap")
+        texture.image = make_image("stripes", np.stack([u, v, 0.5 + 0.5 * np.sin(20 * u)], -1).astype(np.float32))
+        uv.uv_map = "second"
+        tree.links.new(uv.outputs[0], texture.inputs[0])
+        tree.links.new(texture.outputs[0], tree.nodes["Principled BSDF"].inputs["Base Color"])
+        bpy.context.view_layer.use_pass_diffuse_color = True
+        subdivide(ob, levels=4)
+        self.camera.location, self.camera.rotation_euler = (0, 0, 6), (0, 0, 0)
+        ours, theirs = self.compare("color")
+        both = ours.mask & theirs.mask
+        error = np.abs(ours["DiffCol"] - theirs["DiffCol"])[both]
+        print(f"color: median {np.median(error):.4f}, 95 % {np.quantile(error, 0.95):.4f}", flush=True)
+        self.assertLess(np.median(error), 0.01)
+        self.assertEqual(self.report(), [])
+
     def test_bump_only_is_not_displaced_and_named(self):
         ob = self.make_plane(8)
         material = make_material(ob)

@@ -82,6 +82,31 @@ class Materials(BlenderTest):
         self.assertEqual((keys["uv_scale"], keys["uv_offset"]), ([2, 3], [0.5, -0.25]))
         self.assertEqual(self.exported.base.uv_map, "second")
 
+    def test_textures_on_other_uv_maps_have_sets_of_their_own(self):
+        for name, uv_map, scale in (("Base Color", "second", 2), ("Roughness", "third", 3), ("Coat Weight", "second", 4)):
+            texture, mapping, uv = self.texture(), self.node("ShaderNodeMapping"), self.node("ShaderNodeUVMap", uv_map=uv_map)
+            mapping.inputs["Scale"].default_value = (scale, scale, 1)
+            self.tree.links.new(uv.outputs[0], mapping.inputs[0])
+            self.tree.links.new(mapping.outputs[0], texture.inputs[0])
+            self.feed(texture.outputs[0], name)
+        displaced = displace(self.material, make_image("hook", make_hook()))
+        mapping = self.node("ShaderNodeMapping")
+        mapping.inputs["Scale"].default_value = (5, 5, 1)
+        self.tree.links.new(mapping.outputs[0], displaced.inputs[0])
+        keys = self.export()
+        self.assertEqual((self.exported.base.uv_map, self.exported.base.scale), ("", (5, 5)))
+        for name, uv_map, scale in (("base_color", "second", 2), ("roughness", "third", 3), ("coat_weight", "second", 4)):
+            self.assertEqual(self.exported.further[keys[name]["uv_set"] - 1], uv_map)
+            self.assertEqual(keys[name]["uv_scale"], [scale, scale])  # the mapping of the displacement is not of these
+        self.assertEqual(self.report_lines.lines, [])
+        grid = make_grid(2)
+        for name, size in (("second", 0.5), ("third", 0.25)):
+            layer = grid.data.uv_layers.new(name=name)
+            layer.uv.foreach_set("vector", np.full(2 * len(grid.data.loops), size, np.float32))
+        arrays = mesh_arrays.read_mesh(grid.data, "", self.exported.further)
+        for uv_map, uvs in zip(self.exported.further, arrays.further_uvs):
+            self.assertTrue((uvs == {"second": 0.5, "third": 0.25}[uv_map]).all())
+
     def test_a_mapping_of_the_displacement_moves_the_uvs_and_not_the_other_textures(self):
         texture = displace(self.material, make_image("hook", make_hook()))
         mapping, color = self.node("ShaderNodeMapping"), self.texture()
