@@ -53,8 +53,14 @@ bool has_uv_sets(const Surface& surface, const Mesh& mesh, const std::vector<int
     std::vector<int> wanted, found;
     for (const UvSet& set : mesh.further_uvs)
         if (std::ranges::find(uv_sets, set.number) != uv_sets.end()) wanted.push_back(set.number);
+    if (std::ranges::find(uv_sets, kOwnUvSet) != uv_sets.end()) wanted.push_back(kOwnUvSet);
     for (const PatchUvs& set : surface.further_uvs) found.push_back(set.number);
     return wanted == found;
+}
+
+/// Whether surfaces of the object have uvs without the offsets of their tiles.
+bool has_tiles(const Scene& scene, const Object& object) {
+    return object.displacement != kNoIndex && scene.displacements[object.displacement].is_udim;
 }
 
 /// Adds what is not there yet.
@@ -133,7 +139,10 @@ SurfaceList list_surfaces(const Scene& scene, const std::vector<Material>& mater
             list.numbers.try_emplace(make_key(scene, k), uint32_t(list.first_object.size()));
         if (is_new) list.first_object.push_back(k), list.uv_sets.emplace_back();
         instances.push_back(make_instance(scene.objects[k], place->second, default_material));
-        add_uv_sets(of_material[instances.back().material], list.uv_sets[place->second]);
+        const uint32_t material = instances.back().material;
+        add_uv_sets(of_material[material], list.uv_sets[place->second]);
+        if (has_tiles(scene, scene.objects[k]) && !materials[material].textures.empty())
+            add_uv_sets({kOwnUvSet}, list.uv_sets[place->second]);
     }
     return list;
 }

@@ -11,7 +11,7 @@ namespace relief {
 struct SurfaceList {
     SurfaceNumbers numbers;
     std::vector<uint32_t> first_object;    ///< of each surface
-    std::vector<std::vector<int>> uv_sets; ///< of each, those that textures of its materials name
+    std::vector<std::vector<int>> uv_sets; ///< of each, as make_surface() takes them
 };
 
 /// Also makes the instances, without places and levels. The last one of `materials` is that of objects that

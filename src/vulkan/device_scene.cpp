@@ -93,7 +93,8 @@ uint32_t DeviceScene::texture_index(const Texture* texture) const {
 }
 
 uint32_t DeviceScene::uv_set_index(int number) const {
-    const auto found = std::ranges::find(uv_sets_, number);
+    auto found = std::ranges::find(uv_sets_, number);
+    if (found == uv_sets_.end()) found = std::ranges::find(uv_sets_, kOwnUvSet);
     return found == uv_sets_.end() ? kNone : uint32_t(found - uv_sets_.begin());
 }
 

@@ -74,6 +74,21 @@ TEST(UvSets, lie_on_displaced_surfaces_of_both_kinds) {
     }
 }
 
+TEST(UvSets, with_tiles_are_whole_on_surfaces_that_a_map_with_tiles_displaces) {
+    for (const int uv_set : {kOwnUvSet, 0})
+        for (const SurfaceMode mode : {SurfaceMode::direct, SurfaceMode::tessellated}) {
+            Scene scene = make_tiled_scene();
+            scene.materials[0].textures[0].uv_set = uv_set;
+            RenderSettings settings = make_small_settings(16, 1, 1);
+            settings.image.layers = {"albedo"};
+            settings.surface.mode = mode;
+            const Image image = render(std::move(scene), settings).image;
+            const size_t albedo = image.find_channel("albedo.G").value();
+            EXPECT_FLOAT_EQ(image.at(6, 8, albedo), 0.25f);
+            EXPECT_FLOAT_EQ(image.at(10, 8, albedo), 0.75f);
+        }
+}
+
 TEST(UvSets, may_differ_between_the_objects_of_one_mesh) {
     const Material material = make_set_materials()[0];
     const Mesh mesh = make_two_set_sphere();

@@ -72,4 +72,28 @@ inline Scene make_set_scene(Mesh mesh, const Material& material) {
     return scene;
 }
 
+/// Two unit squares side by side in tiles 1001 and 1012, on a map of both that moves nothing.
+inline Scene make_tiled_scene() {
+    Mesh mesh;
+    mesh.positions = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}};
+    mesh.face_sizes = {4, 4};
+    mesh.position_indices = {0, 1, 4, 3, 1, 2, 5, 4};
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {1, 1}, {2, 1}, {2, 2}, {1, 2}};
+    mesh.uv_indices = {0, 1, 2, 3, 4, 5, 6, 7};
+    Scene scene;
+    Material material = make_matte(1);
+    material.textures = {{.input = MaterialInput::base_color,
+                          .tiles = {{1001, make_grey_texture({0.25f})}, {1012, make_grey_texture({0.75f})}},
+                          .is_udim = true}};
+    add_object(scene, mesh, material);
+    Displacement map;
+    map.is_udim = true;
+    map.tiles = {{1001, make_grey_texture({0})}, {1012, make_grey_texture({0})}};
+    scene.displacements = {map};
+    scene.objects[0].displacement = 0;
+    scene.environment = Environment{};
+    scene.camera.from = {0, 0.5f, 3}, scene.camera.to = {0, 0.5f, 0};
+    return scene;
+}
+
 } // namespace relief

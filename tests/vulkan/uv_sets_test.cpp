@@ -49,5 +49,13 @@ TEST_F(UvSetPictures, of_several_meshes_agree) {
     expect_engines_agree(device(), std::move(scene), 8, {"albedo", "variance"});
 }
 
+TEST_F(UvSetPictures, of_tiles_on_surfaces_with_tiles_agree) {
+    for (const int uv_set : {kOwnUvSet, 0}) {
+        Scene scene = make_tiled_scene();
+        scene.materials[0].textures[0].uv_set = uv_set;
+        expect_engines_agree(device(), std::move(scene), 8, {"albedo", "variance"});
+    }
+}
+
 } // namespace
 } // namespace relief::vulkan::tests

@@ -22,7 +22,7 @@ struct TexturePlace {
 
     /// In the set that a texture names.
     Vec2f find_uv(int uv_set) const {
-        const PatchUvs* further = uv_set == kOwnUvSet ? nullptr : surface.find_further_uvs(uv_set);
+        const PatchUvs* further = surface.find_further_uvs(uv_set);
         return further ? blend_corner_uvs(surface, further->corners[patch], at) : uv;
     }
 };

@@ -87,17 +87,18 @@ void copy_uvs(Surface& surface, const VertexSplitter& vertices) {
     for (uint32_t v = 0; v < vertices.count(); ++v) surface.uvs[v] = vertices.attributes(v).uv;
 }
 
-/// A patch for each face.
+/// A patch for each face; `uvs`: one a corner.
+PatchUvs make_patch_uvs(const Polygons& polygons, int number, const std::vector<Vec2f>& uvs) {
+    PatchUvs result{number, std::vector<std::array<Vec2f, 4>>(polygons.face_count())};
+    for (uint32_t face = 0; face < polygons.face_count(); ++face)
+        for (uint32_t k = 0; k < 4; ++k)
+            result.corners[face][k] = uvs[polygons.starts[face] + std::min(k, polygons.face_size(face) - 1)];
+    return result;
+}
+
 void copy_further_uvs(Surface& surface, const Polygons& polygons) {
-    for (const CornerUvs& set : polygons.further_uvs) {
-        PatchUvs& uvs = surface.further_uvs.emplace_back();
-        uvs.number = set.number;
-        uvs.corners.resize(polygons.face_count());
-        for (uint32_t face = 0; face < polygons.face_count(); ++face)
-            for (uint32_t k = 0; k < 4; ++k)
-                uvs.corners[face][k] =
-                    set.uvs[polygons.starts[face] + std::min(k, polygons.face_size(face) - 1)];
-    }
+    for (const CornerUvs& set : polygons.further_uvs)
+        surface.further_uvs.push_back(make_patch_uvs(polygons, set.number, set.uvs));
 }
 
 /// Tile of a patch by the middle of its uvs, and what to take off them.
@@ -293,6 +294,9 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim, lacks_uvs);
     find_overrides(surface, lacks_uvs);
     copy_further_uvs(surface, framed.base.polygons);
+    if (displacement.is_udim && std::ranges::find(uv_sets, kOwnUvSet) != uv_sets.end())
+        surface.further_uvs.push_back(
+            make_patch_uvs(framed.base.polygons, kOwnUvSet, framed.base.polygons.uvs));
     surface.controls = std::move(framed.base.controls);
     sources.point_normals = std::move(framed.point_normals);
     // A height moves along the normal alone.

@@ -69,7 +69,8 @@ struct DisplacementMap {
 /// Control points of a bicubic patch beside its corners (less 4), bit-equal on shared edges.
 using InnerControls = std::array<Vec3f, scalar::kInnerControlCount>;
 
-/// Uvs of another set than the mesh's own, for textures of materials.
+/// Uvs for textures of materials: of another set than the mesh's own, or its own (kOwnUvSet) with the offsets
+/// of tiles, which Surface::uvs lack.
 struct PatchUvs {
     int number = 0;                            ///< as UvSet::number
     std::vector<std::array<Vec2f, 4>> corners; ///< one a patch; of a triangle the last two are alike
@@ -113,11 +114,15 @@ struct Surface {
         if (derivatives.empty()) return unpack_frame(frames[vertex]);
         return {derivatives[vertex][0], derivatives[vertex][1], unpack_normal(frames[vertex])};
     }
-    /// Null: of the mesh's own set, and of one that nobody asked for.
+    /// What a texture on the set of a number is read at; null: `uvs`, for the mesh's own set, whatever it is
+    /// called.
     const PatchUvs* find_further_uvs(int number) const {
-        for (const PatchUvs& set : further_uvs)
+        const PatchUvs* own = nullptr;
+        for (const PatchUvs& set : further_uvs) {
             if (set.number == number) return &set;
-        return nullptr;
+            if (set.number == kOwnUvSet) own = &set;
+        }
+        return own;
     }
     uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
 
@@ -180,8 +185,9 @@ class PyramidCache;
 /// corner before are dropped, so a quad with a collapsed edge counts as a triangle. `object_from_world` is
 /// used by world-space displacement only. Surfaces made with the same `pyramids`
 /// (surface/map/displacement_map.h) share the bounds of their textures. `uv_sets`: which of the mesh's
-/// further uvs textures lie on. Throws bad_input with mesh and face: missing uv, index out of range, no face
-/// with an area, a value that is not finite or absurdly large.
+/// further uvs textures lie on, and kOwnUvSet where some are to be read on its own with the offsets of tiles.
+/// Throws bad_input with mesh and face: missing uv, index out of range, no face with an area, a value that is
+/// not finite or absurdly large.
 Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
                      PyramidCache* pyramids = nullptr, std::span<const int> uv_sets = {});
 
