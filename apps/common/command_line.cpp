@@ -17,6 +17,7 @@
 #include "common/option_hints.h"
 #include "common/option_names.h"
 #include "relief/error.h"
+#include "relief/io.h"
 #include "relief/version.h"
 
 namespace relief::cli {
