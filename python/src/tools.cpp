@@ -121,7 +121,34 @@ MapOptions read_map_options(const nb::dict& keys) {
     return options;
 }
 
-/// Tiles by UDIM numbers as arrays of three channels, the keys of the new map, and warnings.
+/// One number where all three are the same.
+nb::object make_factors(const Vec3f& v) {
+    if (v.x == v.y && v.y == v.z) return nb::float_(v.x);
+    nb::list list;
+    for (const float value : {v.x, v.y, v.z}) list.append(value);
+    return list;
+}
+
+const char* name_space(DisplacementSpace space) {
+    constexpr const char* kSpaces[] = {"tangent", "object", "world"};
+    return kSpaces[size_t(space)];
+}
+
+/// The keys of a scene file that say what the texels mean, whatever they were asked for by.
+nb::dict describe_meaning(const Displacement& map) {
+    constexpr const char *kTypes[] = {"vector", "height"}, *kFrames[] = {"mikk", "dpdu", "file"},
+                         *kLengths[] = {"absolute", "relative"};
+    nb::dict keys;
+    keys["type"] = kTypes[size_t(map.type)], keys["space"] = name_space(map.space);
+    keys["axes"] = format_map_axes(map.axes, map.space);
+    if (map.space == DisplacementSpace::tangent)
+        keys["frame"] = kFrames[size_t(map.frame)], keys["lengths"] = kLengths[size_t(map.lengths)];
+    keys["midlevel"] = make_factors(map.midlevel), keys["scale"] = make_factors(map.scale);
+    keys["flip_v"] = map.flip_v;
+    return keys;
+}
+
+/// Tiles by UDIM numbers as arrays, whether they are tiles, the keys of the new map, and warnings.
 nb::object convert(const ParsedScene& parsed, const nb::dict& keys, const std::optional<nb::dict>& arrays) {
     const Displacement& from = get_map(parsed);
     const Displacement to = make_map_meaning(read_map_options(keys));
@@ -136,8 +163,7 @@ nb::object convert(const ParsedScene& parsed, const nb::dict& keys, const std::o
     }
     nb::dict tiles;
     for (const MapTile& tile : converted.tiles) tiles[nb::int_(tile.udim)] = make_texel_array(*tile.texture);
-    return nb::make_tuple(tiles, converted.is_udim, format_map_axes(converted.axes, converted.space),
-                          warnings);
+    return nb::make_tuple(tiles, converted.is_udim, describe_meaning(converted), warnings);
 }
 
 std::vector<std::string> list_traversals(const std::string& structure, const std::string& engine) {

@@ -40,6 +40,72 @@ class InspectTest(unittest.TestCase):
         self.assertGreater(np.ptp(mesh.positions[:, 2]), 0.1)
 
 
+def make_slope() -> relief.Mesh:
+    """Curved, with uvs at an angle to its edges."""
+    x, z = (grid.reshape(-1) for grid in np.meshgrid(np.linspace(-1, 1, 5), np.linspace(-1, 1, 5)))
+    rows = np.arange(25).reshape(5, 5)
+    quads = np.stack([rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]], 2).reshape(-1, 4)
+    uvs = np.stack([0.5 + 0.3 * x, 0.45 + 0.2 * z + 0.04 * x], 1)
+    return relief.Mesh(np.stack([x + 0.2 * z, 0.3 * np.sin(2 * x) * np.cos(z), -z], 1), quads, uvs, quads)
+
+
+class ConvertTest(unittest.TestCase):
+    """The surface that a map displaces is the same before and after."""
+    KEYS = [{}, {"scale": 3}, {"midlevel": 0.5}, {"midlevel": [0.1, 0.2, 0.3], "scale": [1, 2, 3]}, {"space": "object"},
+            {"axes": "x,z,-y", "space": "object"}, {"axes": "n,-t,b", "space": "tangent"}, {"type": "vector"}, {"frame": "dpdu", "lengths": "relative"},
+            {"flip_v": True}, {"encoding": "signed"}]
+    PRESETS = ["blender-brush", "genvdm", "3dcoat", "vray-tangent", "mudbox", "maya", "cycles", "arnold", "moonray", "daz16"]
+
+    def setUp(self):
+        self.mesh = make_slope()
+        v, u = np.mgrid[0:64, 0:64] / 64
+        self.texels = 0.1 * np.stack([np.sin(6 * u) * np.cos(5 * v), np.cos(4 * u) * np.sin(3 * v), np.sin(9 * u) * np.sin(7 * v)], 2)
+        heights, vectors = self.texels[:, :, 2], self.texels
+        self.sources = {"heights": relief.Displacement(heights), "declared heights": relief.Displacement(heights, type="height"),
+                        "vectors": relief.Displacement(vectors, space="tangent", axes="t,b,n", midlevel=0.02, scale=1.5, wrap="mirror"),
+                        "vectors of an object": relief.Displacement(vectors, space="object", scale=2)}
+
+    def displace(self, displacement):
+        scene = relief.Scene()
+        scene.add(self.mesh, displacement=displacement)
+        return np.asarray(relief.convert(scene, level=3).positions)
+
+    def check_same(self, source, **to):
+        made = relief.convert(source, mesh=self.mesh, **to)
+        self.assertLess(np.abs(self.displace(made) - self.displace(source)).max(), 4e-3, made)
+        return made
+
+    def test_a_map_in_another_convention_displaces_as_before(self):
+        for name, source in self.sources.items():
+            for to in self.KEYS:
+                with self.subTest(name, to=to):
+                    made = self.check_same(source, **to)
+                    self.assertEqual((made["type"], made["file"].shape[2]), ("vector", 3))
+
+    def test_heights_stay_heights_where_they_are_asked_for(self):
+        for name in ("heights", "declared heights"):
+            for to in ({}, {"midlevel": 0.5, "scale": 2}, {"preset": "daz16"}, {"flip_v": True}):
+                with self.subTest(name, to=to):
+                    made = self.check_same(self.sources[name], type="height", **to)
+                    self.assertEqual((made["type"], made["file"].shape[2]), ("height", 1))
+
+    def test_a_map_in_the_convention_of_a_program_displaces_as_before(self):
+        for name, source in self.sources.items():
+            for preset in self.PRESETS if source.get("space") != "object" else ():
+                with self.subTest(name, preset=preset):
+                    self.check_same(source, preset=preset)
+        for preset in self.PRESETS:
+            with self.subTest(preset):
+                self.check_same(relief.Displacement(self.texels + 0.45, preset=preset), preset="maya")
+
+    def test_a_converted_map_says_all_that_it_means(self):
+        made = relief.convert(self.sources["vectors"], preset="daz16", scale=[1, 2, 2])
+        texels = made.pop("file")
+        self.assertEqual(texels.shape, (64, 64, 3))
+        self.assertEqual(made, {"type": "vector", "space": "tangent", "axes": "t,n,b", "frame": "mikk", "lengths": "absolute",
+                                "midlevel": 0.5, "scale": [1, 2, 2], "flip_v": False, "wrap": "mirror"})
+
+
 class PackageTest(unittest.TestCase):
     def test_everything_has_a_docstring(self):
         for name in relief.__all__:
