@@ -69,8 +69,8 @@ def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, 
     """A map in another convention, or the surface of a scene as a mesh.
 
     source: a Displacement (its keys say what it means now), with `to` the keys of the new one: space, axes, type, frame,
-    lengths, midlevel, scale, flip_v, preset, encoding; what is not said is as a scene file has it, but a map stays in its space.
-    mesh: needed between tangent and object space, or between tangent frames. The
+    lengths, midlevel, scale, flip_v, preset, encoding; what is not said is as a scene file has it, but a map stays in its space
+    unless space, axes or a preset say another. mesh: needed between tangent and object space, or between tangent frames. The
     result is a Displacement with all keys of the convention (those that a preset stands for in its place) and an array
     (H, W, 3) of float32, with type="height" (H, W, 1), or one for each tile.
     Or a Scene, or the file of a scene or mesh: a Mesh of its displaced surfaces, 2^level x 2^level quads a patch."""
@@ -87,8 +87,7 @@ def _convert_map(source: Displacement, mesh: Union[Mesh, None], to: dict[str, An
     unknown = [key for key in to if key not in CONVENTION]
     if unknown:
         raise TypeError(f"convert() has no keyword '{unknown[0]}': {', '.join(CONVENTION)}")
-    keys = {"space": source.get("space", "tangent"), **to}
-    tiles, is_udim, meaning, _ = _relief.convert_map(parse_map(source), keys, mesh._collect() if mesh else None)
+    tiles, is_udim, meaning, _ = _relief.convert_map(parse_map(source), to, mesh._collect() if mesh else None)
     made = Displacement(tiles if is_udim else tiles[1001])
     made.update({key: source[key] for key in KEPT if key in source})
     made.update(meaning)

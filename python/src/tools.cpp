@@ -148,10 +148,13 @@ nb::dict describe_meaning(const Displacement& map) {
     return keys;
 }
 
-/// Tiles by UDIM numbers as arrays, whether they are tiles, the keys of the new map, and warnings.
+/// Tiles by UDIM numbers as arrays, whether they are tiles, the keys of the new map, and warnings. Without a
+/// space, axes or a preset the space stays that of the map.
 nb::object convert(const ParsedScene& parsed, const nb::dict& keys, const std::optional<nb::dict>& arrays) {
     const Displacement& from = get_map(parsed);
-    const Displacement to = make_map_meaning(read_map_options(keys));
+    MapOptions options = read_map_options(keys);
+    if (!options.space && !options.axes && options.preset.empty()) options.space = name_space(from.space);
+    const Displacement to = make_map_meaning(options);
     std::optional<Mesh> mesh;
     if (arrays) mesh = make_mesh(*arrays);
     std::vector<std::string> warnings;

@@ -52,7 +52,7 @@ def make_slope() -> relief.Mesh:
 class ConvertTest(unittest.TestCase):
     """The surface that a map displaces is the same before and after."""
     KEYS = [{}, {"scale": 3}, {"midlevel": 0.5}, {"midlevel": [0.1, 0.2, 0.3], "scale": [1, 2, 3]}, {"space": "object"},
-            {"axes": "x,z,-y", "space": "object"}, {"axes": "n,-t,b", "space": "tangent"}, {"type": "vector"}, {"frame": "dpdu", "lengths": "relative"},
+            {"axes": "x,z,-y"}, {"axes": "n,-t,b"}, {"type": "vector"}, {"frame": "dpdu", "lengths": "relative"},
             {"flip_v": True}, {"encoding": "signed"}]
     PRESETS = ["blender-brush", "genvdm", "3dcoat", "vray-tangent", "mudbox", "maya", "cycles", "arnold", "moonray", "daz16"]
 
@@ -63,7 +63,7 @@ class ConvertTest(unittest.TestCase):
         heights, vectors = self.texels[:, :, 2], self.texels
         self.sources = {"heights": relief.Displacement(heights), "declared heights": relief.Displacement(heights, type="height"),
                         "vectors": relief.Displacement(vectors, space="tangent", axes="t,b,n", midlevel=0.02, scale=1.5, wrap="mirror"),
-                        "vectors of an object": relief.Displacement(vectors, space="object", scale=2)}
+                        "vectors of an object": relief.Displacement(vectors, axes="x,y,z", scale=2)}
 
     def displace(self, displacement):
         scene = relief.Scene()
@@ -91,7 +91,7 @@ class ConvertTest(unittest.TestCase):
 
     def test_a_map_in_the_convention_of_a_program_displaces_as_before(self):
         for name, source in self.sources.items():
-            for preset in self.PRESETS if source.get("space") != "object" else ():
+            for preset in self.PRESETS:
                 with self.subTest(name, preset=preset):
                     self.check_same(source, preset=preset)
         for preset in self.PRESETS:
@@ -104,6 +104,12 @@ class ConvertTest(unittest.TestCase):
         self.assertEqual(texels.shape, (64, 64, 3))
         self.assertEqual(made, {"type": "vector", "space": "tangent", "axes": "t,n,b", "frame": "mikk", "lengths": "absolute",
                                 "midlevel": 0.5, "scale": [1, 2, 2], "flip_v": False, "wrap": "mirror"})
+
+    def test_a_preset_decides_the_space_and_else_the_map_does(self):
+        in_object = self.sources["vectors of an object"]
+        self.assertEqual(relief.convert(in_object, mesh=self.mesh, preset="maya")["space"], "tangent")
+        self.assertEqual(relief.convert(in_object, scale=4)["space"], "object")
+        self.assertEqual(relief.convert(in_object, axes="x,z,-y")["axes"], "x,z,-y")
 
 
 class PackageTest(unittest.TestCase):
