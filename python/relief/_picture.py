@@ -6,7 +6,19 @@ import tempfile
 from typing import Any, Optional, Sequence, Union
 
 from . import _relief
-from ._arrays import Array
+from ._arguments import as_number, as_word
+from ._arrays import Array, as_path
+from ._errors import Error
+
+TONEMAPS = ("agx", "aces", "filmic", "standard", "raw")
+MOST_STOPS = 64  # either way
+
+
+def describe_display(tonemap: str, exposure: Union[float, str]) -> dict[str, str]:
+    """Entries of a header."""
+    stops = exposure if isinstance(exposure, str) and exposure == "auto" else as_number(
+        exposure, "exposure", -MOST_STOPS, MOST_STOPS, f'"auto", or a number of stops from {-MOST_STOPS} to {MOST_STOPS}')
+    return {"relief:display": as_word(tonemap, "tonemap", TONEMAPS), "relief:exposure": str(stops)}
 
 
 class Picture:
@@ -73,15 +85,15 @@ class Picture:
 
     def save(self, file: Union[str, os.PathLike[str]], tonemap: str = "agx", exposure: Union[float, str] = 0) -> None:
         """Writes .exr with all channels, .hdr, or .png with the display transform `tonemap` (agx, aces, filmic, standard, raw) and
-        `exposure` in stops, or "auto". The file is replaced atomically."""
-        entries = dict(self._entries)
-        if os.fspath(file).lower().endswith(".png"):
-            entries.update({"relief:display": tonemap, "relief:exposure": str(exposure)})
-        self._image.save(os.fspath(file), entries)
+        `exposure` in stops, -64 to 64, or "auto". The file is replaced atomically."""
+        path, display = as_path(file, "file", "the name of a file"), describe_display(tonemap, exposure)
+        self._image.save(path, {**self._entries, **(display if path.lower().endswith(".png") else {})})
 
     def to_png(self, path: Union[str, os.PathLike[str], None] = None, tonemap: str = "agx",
                exposure: Union[float, str] = 0) -> bytes:
-        """The bytes of a PNG file, which is also written to `path`, if one is given."""
+        """The bytes of a PNG file, which is also written to `path`, a name that ends in .png, if one is given."""
+        if path is not None and not as_path(path, "path", "the name of a file").lower().endswith(".png"):
+            raise Error(f"'{os.fspath(path)}' is no name of a PNG file", where="path", hint="end it in .png; save() writes other kinds")
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "picture.png") if path is None else os.fspath(path)
             self.save(file, tonemap, exposure)

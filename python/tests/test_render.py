@@ -1,5 +1,6 @@
 """Renders: settings, pictures, callbacks, interrupts, threads and the end of Python."""
 import json
+import math
 import os
 import pathlib
 import signal
@@ -119,6 +120,22 @@ class RenderTest(unittest.TestCase):
         self.assertEqual(png[25], 6)  # with alpha, as the film is transparent
         self.assertNotEqual(png, picture.to_png())
         self.assertNotIn("relief:exposure", picture.metadata)
+
+    def test_tonemaps_and_exposures_that_there_are_not_are_refused(self):
+        picture = relief.render(self.scene)
+        self.assertEqual(picture.to_png(exposure=np.float32(0.5)), picture.to_png(exposure=0.5))
+        self.assertNotEqual(picture.to_png(exposure="auto"), picture.to_png())
+        with tempfile.TemporaryDirectory() as folder:
+            for words, keys in (("tonemap: 'filmc' is not one of agx.*did you mean 'filmic'", dict(tonemap="filmc")),
+                                ("tonemap: None", dict(tonemap=None)), ("exposure: 'x' is not", dict(exposure="x")),
+                                ("exposure: nan is not", dict(exposure=math.nan)), ("exposure: None", dict(exposure=None)),
+                                ("exposure: 65 is not", dict(exposure=65)), ("exposure: True", dict(exposure=True))):
+                for call in (picture.to_png, lambda **keys: picture.save(os.path.join(folder, "a.exr"), **keys)):
+                    with self.assertRaisesRegex(relief.Error, words):
+                        call(**keys)
+            with self.assertRaisesRegex(relief.Error, "b.exr' is no name of a PNG"):
+                picture.to_png(os.path.join(folder, "b.exr"))
+            self.assertEqual(os.listdir(folder), [])
 
     def test_progress_and_pictures_so_far_come_to_this_thread(self):
         fractions, pictures, threads = [], [], set()
