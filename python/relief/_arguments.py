@@ -46,7 +46,7 @@ def as_whole(value: Any, name: str, low: int, high: int) -> int:
 
 
 def as_number(value: Any, name: str, low: float, high: float, wanted: Optional[str] = None) -> float:
-    wanted = wanted or f"a number from {low:g} to {high:g}"
+    wanted = wanted or f"a number from {low:.12g} to {high:.12g}"
     if is_truth(value) or isinstance(value, (str, bytes)):
         refuse(value, name, wanted)
     try:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -20,7 +20,10 @@ def split_faces(faces: Any) -> tuple[Array, Array]:
             raise ValueError(f"faces: the shape is {array.shape}, not (F, 3) or (F, 4)")
         sizes, corners = np.full(len(array), array.shape[1], np.uint32), array.reshape(-1)
     else:
-        rows = [list(face) for face in faces]
+        given = list(faces) if isinstance(faces, Iterable) else [faces]
+        if not all(isinstance(face, Iterable) for face in given):
+            raise TypeError(f"faces: an array, a list of lists, or a tuple of sizes and corners is needed, not {faces!r:.60}")
+        rows = [list(face) for face in given]
         sizes = np.array([len(row) for row in rows], np.uint32)
         corners = np.array([corner for row in rows for corner in row], dtype=None if rows else np.uint32)
     for name, part in (("sizes of faces", sizes), ("faces", corners)):
@@ -67,6 +70,8 @@ class Mesh:
         self.sharpness: Optional[Array] = None
         if creases is not None:
             self._read_creases(creases)
+        if not isinstance(subdivision, (Mapping, type(None))):
+            raise TypeError(f"subdivision: a dict of scheme, level, ... is needed, not {subdivision!r:.60}")
         self.subdivision: Optional[dict[str, Any]] = None if subdivision is None else dict(subdivision)
         self.warnings: list[str] = []
         self._collect()
@@ -101,6 +106,8 @@ class Mesh:
         return found
 
     def _read_creases(self, creases: Any) -> None:
+        if not hasattr(creases, "__len__"):
+            raise TypeError(f"creases: rows of two points and a sharpness are needed, not {creases!r:.60}")
         if isinstance(creases, tuple) and len(creases) == 2:
             edges, sharpness = to_numpy(creases[0], "creases"), as_floats(creases[1], "sharpness of creases", None)
         else:

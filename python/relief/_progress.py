@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Any, Callable, Optional, Union
 
 from . import _relief
+from ._arguments import is_no, is_truth
 
 Callback = Callable[[_relief.Progress], Any]
 
@@ -58,10 +59,9 @@ class NoProgress:
 
 
 def open_progress(progress: Union[bool, Callback, None]) -> Union[ProgressLine, NoProgress]:
-    if progress is True:
-        return ProgressLine()
-    if progress is None or progress is False:
-        return NoProgress(None)
+    if progress is None or is_truth(progress):
+        return ProgressLine() if progress else NoProgress(None)
     if not callable(progress):
         raise TypeError(f"progress: {progress!r} is neither True nor a function")
-    return NoProgress(progress)
+    function = progress
+    return NoProgress(lambda made: not is_no(function(made)))

@@ -1,11 +1,12 @@
 """Batches of rays."""
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Iterable, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _relief
+from ._arguments import as_whole
 from ._arrays import Array, as_floats, to_numpy
 from ._render import choose_cache
 from ._scene import Renderable, parse_any
@@ -55,7 +56,7 @@ class Hits:
 
 def read_ends(value: Any, name: str, count: int) -> Array:
     if np.ndim(value) == 0:
-        return np.array([value], np.float32)
+        return as_floats(np.reshape(value, 1), name, None)
     ends = as_floats(value, name, None)
     if len(ends) != count:
         raise ValueError(f"{name}: {len(ends)} of them, and {count} rays")
@@ -102,15 +103,18 @@ class Intersector:
         origins, directions: (N, 3); directions need no unit length, and t is in units of theirs. t_min, t_max: numbers, or
         (N,). Or rays alone, (N, 8) float32 in C order: origin, t_min, direction, t_max, which are read where they are.
         attributes: of shading_normal, texture_uv, derivatives. Arrays of other libraries come by DLPack."""
+        if not isinstance(attributes, (str, Iterable)):
+            raise TypeError(f"attributes: {attributes!r} is no list of names: {', '.join(ATTRIBUTES)}")
         wanted = [attributes] if isinstance(attributes, str) else list(attributes)
-        unknown = [name for name in wanted if name not in ATTRIBUTES]
+        unknown = [name for name in wanted if not isinstance(name, str) or name not in ATTRIBUTES]
         if unknown:
             raise ValueError(f"attributes: '{unknown[0]}' is not one of {', '.join(ATTRIBUTES)}")
         rays = read_rays(origins, directions, t_min, t_max)
         bits = sum(ATTRIBUTES[name] for name in set(wanted))
-        return Hits(*self._intersector.closest_hits(rays, mask, bits), wanted)
+        return Hits(*self._intersector.closest_hits(rays, as_whole(mask, "mask", 0, NOTHING), bits), wanted)
 
     def any_hits(self, origins: Any, directions: Any = None, t_min: Any = 0.0, t_max: Any = np.inf, *,
                  mask: int = NOTHING) -> Array:
         """(N,) bool: whether anything is hit in (t_min, t_max]. Arguments as those of closest_hits()."""
-        return self._intersector.any_hits(read_rays(origins, directions, t_min, t_max), mask).view(np.bool_)
+        rays = read_rays(origins, directions, t_min, t_max)
+        return self._intersector.any_hits(rays, as_whole(mask, "mask", 0, NOTHING)).view(np.bool_)

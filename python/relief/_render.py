@@ -4,10 +4,12 @@ from __future__ import annotations
 import glob
 import importlib.util
 import json
+import math
 import os
 from typing import Any, Callable, Mapping, Optional, Sequence, Union
 
 from . import _relief
+from ._arguments import as_number, as_truth, is_no, is_truth, refuse
 from ._arrays import as_texels
 from ._parts import Camera
 from ._picture import Picture
@@ -58,7 +60,20 @@ def wrap_picture(on_picture: Optional[PictureCallback], entries: dict[str, str])
     if not callable(on_picture):
         raise TypeError(f"on_picture: {on_picture!r} is no function")
     function = on_picture
-    return lambda image: function(Picture(image, complete=False, entries=entries))
+    return lambda image: not is_no(function(Picture(image, complete=False, entries=entries)))
+
+
+def read_interval(value: Any) -> float:
+    return as_number(value, "picture_interval", 0, math.inf, "a number of seconds, 0 or more")
+
+
+def choose_denoisers(denoise: Any) -> Optional[list[str]]:
+    """Libraries to try; None where nothing is to be denoised."""
+    if is_truth(denoise):
+        return find_denoisers() if denoise else None
+    if not isinstance(denoise, (str, os.PathLike)):
+        refuse(denoise, "denoise", "True, False, or the library or folder of Open Image Denoise 2")
+    return [os.fspath(denoise)]
 
 
 def finish(answer: tuple[Any, ...], entries: dict[str, str]) -> Picture:
@@ -110,10 +125,11 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
              "mode": mode, "first_sample": first_sample, "cache_mb": cache_mb, **more}
     keywords = choose_cache({key: value for key, value in given.items() if value is not None})
     entries = make_entries(keywords)
-    denoisers = [] if denoise is False else find_denoisers() if denoise is True else [os.fspath(denoise)]
+    denoisers, interval = choose_denoisers(denoise), read_interval(picture_interval)
+    is_checked = as_truth(check_maps, "check_maps")
     with open_progress(progress) as callback:
-        answer = _relief.render(parse_any(scene, frame), keywords, callback, wrap_picture(on_picture, entries), picture_interval,
-                                check_maps, denoise is not False, denoisers)
+        answer = _relief.render(parse_any(scene, frame), keywords, callback, wrap_picture(on_picture, entries), interval,
+                                is_checked, denoisers is not None, denoisers or [])
     return finish(answer, entries)
 
 
@@ -159,5 +175,6 @@ class Session:
                picture_interval: float = 0.5) -> Picture:
         """The next picture. Callbacks as those of render(); they cannot edit."""
         with open_progress(progress) as callback:
-            answer = self._session.render(callback, wrap_picture(on_picture, self._entries), picture_interval)
+            interval = read_interval(picture_interval)
+            answer = self._session.render(callback, wrap_picture(on_picture, self._entries), interval)
         return finish(answer, self._entries)

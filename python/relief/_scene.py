@@ -10,6 +10,7 @@ from typing import Any, Mapping, Optional, Union, cast
 import numpy as np
 
 from . import _relief
+from ._arguments import as_number, as_whole, refuse
 from ._arrays import Array, as_path, as_texels, is_array, to_numpy
 from ._errors import Error
 from ._mesh import Mesh
@@ -20,6 +21,8 @@ Path = Union[str, "os.PathLike[str]"]
 
 SECTIONS = ("version", "render", "camera", "environment", "materials", "displacements", "meshes", "objects", "lights")
 NAMED_SECTIONS = ("materials", "displacements", "meshes")
+FRAMES = (-1e6, 1e6)
+MAX_PICTURE_SIZE = 65536  # pixels of a side
 # Keys that hold the name of a picture, or an object with one.
 PICTURE_KEYS = re.compile(r"^(file|.*_texture)$")
 
@@ -104,6 +107,14 @@ def strip_comments(text: str) -> str:
     """JSON without its comments: // to the end of a line, and /* */."""
     pattern = re.compile(r'"(?:\\.|[^"\\])*"|//[^\n]*|/\*.*?\*/', re.S)
     return pattern.sub(lambda found: found.group() if found.group().startswith('"') else " ", text)
+
+
+def read_aspect(size: Any) -> float:
+    """Width over height."""
+    if isinstance(size, str) or np.ndim(size) != 1 or len(size) != 2:
+        refuse(size, "size", "two whole numbers, width and height")
+    width, height = (as_whole(side, "size", 1, MAX_PICTURE_SIZE) for side in size)
+    return width / height
 
 
 class Scene:
@@ -245,10 +256,11 @@ class Scene:
         many times as large as the camera shows it now. env_rotate: degrees. light: suns in place of the scene's, a list of
         (azimuth, elevation), degrees. ground: True, a grey floor below all, or "shadow", a floor that shows the shadows on it
         and is clear elsewhere: with background="transparent" for compositing. size: of the picture to come."""
+        aspect = read_aspect(size)
         parsed = self._parse()
         suns = None if light is None else [light] if np.ndim(light) == 1 else list(light)
         parsed.aim({"view": view, "from_": from_, "to": to, "fov": fov, "zoom": zoom, "frame_all": frame_all,
-                    "env_rotate": env_rotate, "env_strength": env_strength, "light": suns, "ground": ground}, size[0] / size[1])
+                    "env_rotate": env_rotate, "env_strength": env_strength, "light": suns, "ground": ground}, aspect)
         said = parsed.describe(len(self.objects))
         self.camera = Camera(said["camera"])
         if self.environment is not None:
@@ -339,6 +351,8 @@ Renderable = Union[Scene, Mesh, Path]
 
 def parse_any(scene: Renderable, frame: Optional[float] = None) -> _relief.Scene:
     """Of a Scene, a Mesh, a scene file, or a mesh file; at a frame, where values have keys. None: the first."""
+    if frame is not None:
+        frame = as_number(frame, "frame", *FRAMES)
     if isinstance(scene, Mesh):
         scene = Scene.from_mesh(scene)
     if isinstance(scene, Scene):

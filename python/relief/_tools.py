@@ -2,15 +2,17 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, Union, cast
+from typing import Any, Mapping, Optional, Union, cast
 
 from . import _relief
-from ._arrays import is_array
+from ._arguments import as_whole
+from ._arrays import as_path, is_array
 from ._mesh import Mesh
 from ._parts import Displacement
 from ._scene import Scene
 
 CONVENTION = ("type", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale", "flip_v")
+MAX_LEVEL = 12
 KEPT = ("wrap", "dilate", "filter", "autobump")  # of a map whose texels are converted
 
 
@@ -37,24 +39,41 @@ def is_map(source: Any) -> bool:
         and not os.fspath(source).lower().endswith(".json")
 
 
+def as_mesh(mesh: Any) -> Optional[Mesh]:
+    """What a map is for; a file is read."""
+    if mesh is None or isinstance(mesh, Mesh):
+        return mesh
+    return Mesh.load(as_path(mesh, "mesh", "a Mesh, or the name of a file"))
+
+
+def refuse_others(call: str, mesh: Any, keywords: Mapping[str, Any], known: str) -> None:
+    """Keywords of another kind of source."""
+    others = ([] if mesh is None else ["mesh"]) + list(keywords)
+    if others:
+        raise TypeError(f"{call} has no keyword '{others[0]}': {known}")
+
+
 def inspect(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, **settings: Any) -> dict[str, Any]:
     """What a scene, mesh or map is, and what is wrong with it: the keys of `relief inspect --json`, facts, values and findings.
 
     source: a Scene, a Mesh, a Displacement or an array of texels, or the file of one. mesh: what a map is for.
     settings: of a scene, those of render(), which its cost is estimated for."""
     if isinstance(source, Mesh):
+        refuse_others("inspect() of a mesh", mesh, settings, "there is none")
         return _add_warnings(_relief.inspect_mesh(source._collect()), source)
     if isinstance(source, Scene):
+        refuse_others("inspect() of a scene", mesh, {}, "settings of render()")
         return _relief.inspect_scene(source._parse(), settings)
     if is_map(source):
-        displacement = as_displacement(source)
-        polygons = Mesh.load(mesh) if isinstance(mesh, (str, os.PathLike)) else mesh
+        refuse_others("inspect() of a map", None, settings, "mesh")
+        displacement, polygons = as_displacement(source), as_mesh(mesh)
         is_declared = any(key in displacement for key in CONVENTION)
         said = _relief.inspect_map(parse_map(displacement), is_declared, polygons._collect() if polygons else None)
         return _add_warnings(said, polygons, "mesh: ") if polygons else said
-    path = os.fspath(source)
+    path = as_path(source, "source", "a Scene, a Mesh, a map, or the name of a file")
     if _relief.is_mesh_file(path):
-        return inspect(Mesh.load(path))
+        return inspect(Mesh.load(path), mesh, **settings)
+    refuse_others("inspect() of a scene", mesh, {}, "settings of render()")
     return _relief.inspect_scene(_relief.load_scene(path), settings)
 
 
@@ -75,12 +94,12 @@ def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, 
     (H, W, 3) of float32, with type="height" (H, W, 1), or one for each tile.
     Or a Scene, or the file of a scene or mesh: a Mesh of its displaced surfaces, 2^level x 2^level quads a patch."""
     if not isinstance(source, (Scene, Mesh)) and is_map(source):
-        polygons = Mesh.load(mesh) if isinstance(mesh, (str, os.PathLike)) else mesh
-        return _convert_map(as_displacement(source), polygons, to)
+        return _convert_map(as_displacement(source), as_mesh(mesh), to)
+    refuse_others("convert() of a scene or mesh", mesh, to, "level")
     if isinstance(source, Mesh):
         source = Scene.from_mesh(source)
     from ._scene import parse_any
-    return Mesh._from_arrays(parse_any(cast(Any, source)).displace(level))
+    return Mesh._from_arrays(parse_any(cast(Any, source)).displace(as_whole(level, "level", 0, MAX_LEVEL)))
 
 
 def _convert_map(source: Displacement, mesh: Union[Mesh, None], to: dict[str, Any]) -> Displacement:

@@ -71,7 +71,7 @@ class RenderTest(unittest.TestCase):
             root["camera"]["from"] = keys
             file.write_text(json.dumps(root))
             np.testing.assert_array_equal(relief.render(file, frame=2).array, stills[1])
-        with self.assertRaisesRegex(relief.Error, "nan is no frame"):
+        with self.assertRaisesRegex(relief.Error, "frame: nan is not a number"):
             relief.render(scene, frame=float("nan"))
         self.assertEqual(relief.parse_frames("1-7x3,12"), [1, 4, 7, 12])
         self.assertEqual(relief.name_frame("wave.####.exr", 12), "wave.0012.exr")
