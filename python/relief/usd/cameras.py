@@ -9,6 +9,7 @@ import relief
 from .context import Context, make_error, read_hint
 from .keys import Rules, read_numbers
 from .motion import key_part
+from .time_range import MAX_SHUTTER
 
 MOVING = ("focalLength", "focusDistance", "fStop", "verticalAperture", "horizontalApertureOffset", "verticalApertureOffset")
 TENTHS = 0.1  # focal lengths and apertures are in tenths of scene units
@@ -31,16 +32,18 @@ def choose_camera(context: Context, settings, items: list):
         if item is not chosen:
             context.report.add(item.prim, f"is not the camera of the scene, which is {chosen.prim.GetPath()}")
     camera = UsdGeom.Camera(chosen.prim)
-    context.scene.camera = read_camera(context, camera, chosen.matrices)
-    if context.range is not None:
-        add_motion(context, camera)
+    with context.reading(chosen.prim):
+        context.scene.camera = read_camera(context, camera, chosen.matrices)
+        if context.range is not None:
+            add_motion(context, camera)
     return camera
 
 
 def add_motion(context: Context, camera: UsdGeom.Camera) -> None:
     """The shutter, and keys of what changes."""
     keys, prim = context.scene.camera, camera.GetPrim()
-    shutter = [float(context.get(camera.GetShutterOpenAttr(), 0.0)), float(context.get(camera.GetShutterCloseAttr(), 0.0))]
+    shutter = [float(context.get(attribute, 0.0, -MAX_SHUTTER, MAX_SHUTTER))
+               for attribute in (camera.GetShutterOpenAttr(), camera.GetShutterCloseAttr())]
     if shutter[0] > shutter[1]:
         context.report.add(prim, f"shutter:open {shutter[0]:g} comes after shutter:close {shutter[1]:g}: there is no motion blur")
     elif shutter != [0, 0]:
@@ -63,6 +66,8 @@ def add_motion(context: Context, camera: UsdGeom.Camera) -> None:
 def read_camera(context: Context, camera: UsdGeom.Camera, matrix: np.ndarray) -> relief.Camera:
     prim = camera.GetPrim()
     place, backward, upward = matrix[:3, 3], matrix[:3, 2], matrix[:3, 1]
+    if not (np.isfinite(matrix).all() and np.linalg.norm(backward) > 0 and np.linalg.norm(upward) > 0):
+        context.fail(prim, "its transform is not finite or has no extent", "a camera looks along its own -z")
     forward = -backward / max(np.linalg.norm(backward), 1e-300)
     high = max(context.get(camera.GetVerticalApertureAttr(), 15.2908), 1e-6)
     focal = context.get(camera.GetFocalLengthAttr(), 50.0)

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import math
 import os
 import shutil
 import tempfile
@@ -53,6 +54,8 @@ class Context:
         self.sequences: set = set()  # names of numbered files
         self.time = find_time(stage, options.time)
         self.unit = UsdGeom.GetStageMetersPerUnit(stage) if options.meters else 1.0
+        if not 0 < self.unit < math.inf:
+            raise make_error(f"metersPerUnit is {self.unit:g}", path, "it has to be more than 0, or leave meters out")
         self.is_z_up = UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z
         self.upright = np.eye(4)
         if self.is_z_up:
@@ -84,10 +87,54 @@ class Context:
     def fail(self, prim, message: str, hint: str = ""):
         raise make_error(message, f"{self.path}: {prim.GetPath()}", hint)
 
-    def get(self, attribute, fallback=None):
-        """The value of an attribute at the time; `fallback` where there is none."""
+    @contextlib.contextmanager
+    def reading(self, prim):
+        """Whatever goes wrong with a prim is an error with its path."""
+        try:
+            yield
+        except MemoryError:
+            raise
+        except Exception as error:
+            if isinstance(error, relief.Error) and self.path in error.where:
+                raise
+            text = " ".join(str(error).split()) or type(error).__name__
+            raise make_error(f"cannot be read: {text}", f"{self.path}: {prim.GetPath()}", "mend it, or deactivate the prim") from error
+
+    def get(self, attribute, fallback=None, low: float = -math.inf, high: float = math.inf):
+        """The value of an attribute at the time; `fallback` where there is none. Numbers outside of [low, high], and numbers,
+        vectors and matrices that are not finite, are errors; arrays are checked by who reads them."""
         value = attribute.Get(self.time) if attribute else None
-        return fallback if value is None else value
+        if value is None:
+            return fallback
+        if not is_finite(value):
+            self.fail(attribute.GetPrim(), f"{attribute.GetName()} is {value}{self.describe_time()}", "it has to be finite")
+        if is_number(value) and not low <= value <= high:
+            wanted = f"from {low:g} to {high:g}" if math.isfinite(high) else f"{low:g} or more"
+            self.fail(attribute.GetPrim(), f"{attribute.GetName()} is {value:g}{self.describe_time()}", f"it has to be {wanted}")
+        return value
+
+    def get_whole(self, prim, name: str, low: int, high: int) -> int | None:
+        """Of an attribute that save() or a user has noted; None where there is none."""
+        attribute = prim.GetAttribute(name)
+        value = attribute.Get() if attribute else None
+        if value is None:
+            return None
+        if not (is_number(value) and low <= value <= high and value == int(value)):
+            self.fail(prim, f"{name} is {value!r}", f"it has to be a whole number from {low} to {high}")
+        return int(value)
+
+    def describe_time(self) -> str:
+        return "" if self.range is None else f" at frame {self.time.GetValue():g}"
+
+
+def is_number(value) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def is_finite(value) -> bool:
+    """Of numbers, vectors and matrices; all else is."""
+    has_numbers = is_number(value) or hasattr(type(value), "dimension")
+    return not has_numbers or bool(np.isfinite(np.array(value, np.float64)).all())
 
 
 def make_error(message: str, where: str, hint: str = "") -> relief.Error:
@@ -117,6 +164,6 @@ def read_hint(prim, name: str, derived: float, tolerance: float = 1e-5) -> float
     """The number that save() has noted down exactly, as long as it still agrees with what the prim says."""
     attribute = prim.GetAttribute(name)
     noted = attribute.Get() if attribute else None
-    if noted is None or abs(noted - derived) > tolerance * max(abs(derived), 1e-30):
+    if noted is None or not abs(noted - derived) <= tolerance * max(abs(derived), 1e-30):
         return derived
     return float(noted)

@@ -8,6 +8,8 @@ from .assets import resolve_asset
 from .shading import Network, Texture, is_texture
 
 PREFIX = "relief:displacement:"
+KEYS = ("file", "name", "uvs", "type", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale", "flip_v",
+        "wrap", "dilate", "filter", "dequantize", "autobump")
 # What MaterialX says of a vector: dP/du, dP/dv and the normal.
 TANGENT = {"space": "tangent", "axes": "t,b,n", "frame": "dpdu", "lengths": "relative"}
 OBJECT = {"space": "object", "axes": "x,y,z"}
@@ -99,7 +101,7 @@ def simplify(values: np.ndarray):
 
 def read_noted(context, prim: Usd.Prim) -> dict | None:
     """What attributes relief:displacement:KEY of a prim say, of the keys of the scene file; `file` is an asset."""
-    keys = {}
+    keys: dict = {}
     for attribute in prim.GetAuthoredPropertiesInNamespace(PREFIX.rstrip(":")):
         name, value = attribute.GetName()[len(PREFIX):], attribute.Get(context.time)
         if name == "file":
@@ -107,10 +109,26 @@ def read_noted(context, prim: Usd.Prim) -> dict | None:
             if value is None:
                 context.report.add(prim, f"there is no displacement map {getattr(attribute.Get(), 'path', '')}")
                 return None
-        elif not isinstance(value, (str, bool, int, float)):
-            value = [float(v) for v in value]
+        elif value is None:
+            context.report.add(prim, f"{attribute.GetName()} has no value")
+            continue
+        else:
+            value = read_key(context, attribute, name)
         keys[name] = value
     return keys if "file" in keys else None
+
+
+def read_key(context, attribute: Usd.Attribute, name: str):
+    """A word, a number, or three."""
+    if name not in KEYS:
+        context.fail(attribute.GetPrim(), f"{attribute.GetName()} is no key of a displacement", f"known: {', '.join(KEYS)}")
+    value = context.get(attribute)
+    if isinstance(value, (str, bool, int, float)):
+        return value
+    array = np.array(value, np.float64)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        context.fail(attribute.GetPrim(), f"{attribute.GetName()} is {value}", "it has to be a number, or three")
+    return array.tolist()
 
 
 def find_noted(context, prim: Usd.Prim) -> dict | None:

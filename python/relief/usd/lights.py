@@ -18,6 +18,7 @@ from .shading import SPACES, spread
 from .walk import Item
 
 MAX_ANGLE = 90.0  # of suns, degrees
+MAX_RADIANCE = 1e30
 
 
 def add_lights(context: Context, items: list, paths_of_names: dict) -> None:
@@ -27,19 +28,21 @@ def add_lights(context: Context, items: list, paths_of_names: dict) -> None:
             context.report.add(prim, "lights of point instancers are not taken over")
             continue
         if kind in ("DomeLight", "DomeLight_1"):
-            add_dome(context, item)
+            with context.reading(prim):
+                add_dome(context, item)
             continue
         reader = READERS.get(kind)
         if reader is None:
             if not prim.IsA(UsdGeom.Mesh):
                 context.report.add(prim, f"{kind} is not taken over")
             continue
-        keys = read_light(context, item, reader)
-        if keys is None:
-            continue
-        keys.update(add_motion(context, item, reader, keys))
-        keys.update(read_links(context, prim, paths_of_names))
-        context.scene.lights.append(relief.Light(**keys))
+        with context.reading(prim):
+            keys = read_light(context, item, reader)
+            if keys is None:
+                continue
+            keys.update(add_motion(context, item, reader, keys))
+            keys.update(read_links(context, prim, paths_of_names))
+            context.scene.lights.append(relief.Light(**keys))
 
 
 def read_light(context: Context, item: Item, reader) -> dict | None:
@@ -71,7 +74,12 @@ def list_inputs(prim: Usd.Prim) -> list:
 def read_radiance(context: Context, prim: Usd.Prim) -> float:
     """intensity 2^exposure, without the colour."""
     light = UsdLux.LightAPI(prim)
-    return float(context.get(light.GetIntensityAttr(), 1.0)) * 2.0 ** float(context.get(light.GetExposureAttr(), 0.0))
+    intensity = float(context.get(light.GetIntensityAttr(), 1.0, 0))
+    exposure = float(context.get(light.GetExposureAttr(), 0.0))
+    radiance = intensity * 2.0 ** min(exposure, 1000.0)
+    if radiance > MAX_RADIANCE:
+        context.fail(prim, f"intensity {intensity:g} and exposure {exposure:g} are a radiance of more than {MAX_RADIANCE:g}")
+    return radiance
 
 
 def read_color(context: Context, prim: Usd.Prim) -> list:
@@ -126,7 +134,10 @@ def is_normalized(context: Context, prim: Usd.Prim) -> bool:
 
 
 def read_sun(context: Context, item: Item) -> dict | None:
-    angle = float(context.get(item.prim.GetAttribute("inputs:angle"), 0.53))
+    if not np.linalg.norm(item.matrices[:3, 2]) > 0:
+        context.report.add(item.prim, "has no direction and thus gives no light")
+        return None
+    angle = float(context.get(item.prim.GetAttribute("inputs:angle"), 0.53, 0))
     if angle > MAX_ANGLE:
         context.report.add(item.prim, f"angle of {angle:g} is taken as {MAX_ANGLE:g} degrees")
         angle = MAX_ANGLE
@@ -139,8 +150,8 @@ def read_sun(context: Context, item: Item) -> dict | None:
 def compute_frame(context: Context, item: Item) -> tuple:
     """(centre, axes of unit length, their lengths in units of the stage)."""
     axes = item.matrices[:3, :3]
-    lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-300)
-    return item.matrices[:3, 3], axes / lengths, lengths / context.unit
+    lengths = np.linalg.norm(axes, axis=0)
+    return item.matrices[:3, 3], axes / np.maximum(lengths, 1e-300), lengths / context.unit
 
 
 def to_strength(context: Context, prim: Usd.Prim, area: float, faces: float) -> float:
@@ -156,7 +167,7 @@ def read_sphere(context: Context, item: Item) -> dict | None:
     scale = float(np.prod(lengths)) ** (1 / 3)
     if np.ptp(lengths) > 1e-4 * scale:
         context.report.add(prim, "a sphere that is scaled to an ellipsoid is taken as a sphere")
-    radius = float(context.get(prim.GetAttribute("inputs:radius"), 0.5)) * scale
+    radius = float(context.get(prim.GetAttribute("inputs:radius"), 0.5, 0)) * scale
     strength = to_strength(context, prim, np.pi * radius ** 2, 4)
     if context.get(prim.GetAttribute("treatAsPoint"), False):
         radius = 0.0
@@ -164,7 +175,7 @@ def read_sphere(context: Context, item: Item) -> dict | None:
         context.report.add(prim, "has no surface and thus gives no light: it is neither normalized nor has it a radius")
         return None
     keys = {"type": "point", "position": to_list(centre), "radius": radius * context.unit, "strength": strength}
-    if prim.HasAPI(UsdLux.ShapingAPI):
+    if prim.HasAPI(UsdLux.ShapingAPI) and lengths[2] > 0:
         shape_spot(context, prim, -axes[:, 2], keys)
     return keys
 

@@ -1,6 +1,7 @@
 """From a stage to a scene: opens it, walks over its prims, and hands each to its reader."""
 from __future__ import annotations
 
+import math
 import os
 import re
 
@@ -17,6 +18,12 @@ from .objects import ObjectReader
 from .pictures import read_other_pictures
 from .time_range import read_range, report_other_motion
 from .walk import walk
+
+KINDS = {"time": ((int, float, np.integer, np.floating), "a time code, a number"), "frames": (str, '"1-24", "1-100x2,150" or "all"'),
+         "camera": (str, "the path of a camera"), "subdivision_level": ((int, np.integer), "0 to 8")}
+PURPOSES = ("default", "render", "proxy", "guide")
+MAX_SIZE = 65536  # pixels of a side
+RENDER_KEYS = {"spp": (1, 2**20), "bounces": (0, 1000), "seed": (0, 2**32 - 1)}
 
 __all__ = ["Options", "load_scene"]
 
@@ -83,6 +90,15 @@ def bake_skinning(context: Context) -> None:
 
 
 def check_options(options: Options, path: str) -> None:
+    for name in ("time", "frames", "camera", "subdivision_level"):
+        value, (kinds, wanted) = getattr(options, name), KINDS[name]
+        if value is not None and (isinstance(value, bool) or not isinstance(value, kinds)):
+            raise make_error(f"{name} is {value!r}", path, f"it has to be {wanted}")
+    if options.time is not None and not math.isfinite(options.time):
+        raise make_error(f"time is {options.time}", path, "it has to be a time code")
+    unknown = [name for name in options.purposes if name not in PURPOSES]
+    if unknown:
+        raise make_error(f"purposes has {unknown[0]!r}", path, f"they are a list of {', '.join(PURPOSES)}")
     if options.vector_space not in ("tangent", "object"):
         raise make_error(f"vector_space is {options.vector_space!r}", path, 'it is "tangent" or "object"')
     level = options.subdivision_level
@@ -94,12 +110,14 @@ def set_size(context: Context, settings, camera) -> None:
     """The size of the picture: that of the render settings, else of the aspect of the camera."""
     resolution = context.get(settings.GetResolutionAttr()) if settings else None
     if resolution:
+        if not all(1 <= side <= MAX_SIZE for side in resolution):
+            context.fail(settings.GetPrim(), f"resolution is {resolution}", f"both sides have to be 1 to {MAX_SIZE} pixels")
         context.scene.render.update(width=int(resolution[0]), height=int(resolution[1]))
     elif camera is not None:
         across = context.get(camera.GetHorizontalApertureAttr(), 0)
         high = context.get(camera.GetVerticalApertureAttr(), 0)
         if across > 0 and high > 0:
-            context.scene.render.update(width=1280, height=max(1, round(1280 * high / across)))
+            context.scene.render.update(width=1280, height=min(max(1, round(1280 * high / across)), MAX_SIZE))
 
 
 def find_settings(stage: Usd.Stage):
@@ -112,10 +130,36 @@ def find_settings(stage: Usd.Stage):
 
 
 def read_render_keys(context: Context, settings) -> None:
-    for key in ("spp", "bounces", "seed"):
-        attribute = settings.GetPrim().GetAttribute(f"relief:{key}") if settings else None
-        if attribute and attribute.Get() is not None:
-            context.scene.render[key] = int(attribute.Get())
+    for key, limits in RENDER_KEYS.items() if settings else ():
+        value = context.get_whole(settings.GetPrim(), f"relief:{key}", *limits)
+        if value is not None:
+            context.scene.render[key] = value
+
+
+def read_stage(context: Context) -> None:
+    complete(context)
+    bake_skinning(context)
+    objects = ObjectReader(context)
+    cameras, lights, others = [], [], []
+    for item in walk(context, context.stage.GetPseudoRoot(), context.root):
+        prim = item.prim
+        if prim.IsA(UsdGeom.Camera):
+            cameras.append(item)
+            continue
+        others.append(item)
+        if item.is_light():
+            lights.append(item)
+        elif objects.can_read(prim):
+            with context.reading(prim):
+                objects.add(item)
+        elif prim.GetTypeName() not in NOT_SHAPES:
+            context.report.add(prim, f"{prim.GetTypeName()} is not taken over")
+        if item.is_light() and objects.can_read(prim):
+            context.report.add(prim, "the light of a mesh is not taken over")
+    camera = finish(context, objects, cameras, lights)
+    if context.range is not None:
+        chosen = [item for item in cameras if camera is not None and item.prim == camera.GetPrim()]
+        report_other_motion(context, others + chosen)
 
 
 def load_scene(path: str, options: Options, report: list | None) -> relief.Scene:
@@ -125,28 +169,8 @@ def load_scene(path: str, options: Options, report: list | None) -> relief.Scene
     context.range = read_range(stage, options, path)
     if context.range is not None and options.time is None:
         context.time = Usd.TimeCode(context.range.first)
-    complete(context)
-    bake_skinning(context)
-    objects = ObjectReader(context)
-    cameras, lights, others = [], [], []
-    for item in walk(context, stage.GetPseudoRoot(), context.root):
-        prim = item.prim
-        if prim.IsA(UsdGeom.Camera):
-            cameras.append(item)
-            continue
-        others.append(item)
-        if item.is_light():
-            lights.append(item)
-        elif objects.can_read(prim):
-            objects.add(item)
-        elif prim.GetTypeName() not in NOT_SHAPES:
-            context.report.add(prim, f"{prim.GetTypeName()} is not taken over")
-        if item.is_light() and objects.can_read(prim):
-            context.report.add(prim, "the light of a mesh is not taken over")
-    camera = finish(context, objects, cameras, lights)
-    if context.range is not None:
-        chosen = [item for item in cameras if camera is not None and item.prim == camera.GetPrim()]
-        report_other_motion(context, others + chosen)
+    with context.reading(stage.GetPseudoRoot()):
+        read_stage(context)
     if report is not None:
         report += context.report.lines()
     return context.scene

@@ -55,7 +55,8 @@ class MaterialReader:
         own = prim.GetPrimInPrototype() if prim.IsInstanceProxy() else prim
         key = str(own.GetPath())
         if key not in self.found:
-            self.found[key] = self.read_new(prim)
+            with self.context.reading(prim):
+                self.found[key] = self.read_new(prim)
         return self.found[key]
 
     def make_name(self, wanted: str) -> str:
@@ -124,6 +125,9 @@ class MaterialReader:
 
         found = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
         values = np.array(found.Get(self.context.time) if found and found.HasValue() else [], np.float64).reshape(-1, 3)
+        if not np.isfinite(values).all():
+            self.context.report.add(prim, "displayColor is not finite and is left out")
+            return None
         if len(values) == 0:
             return None
         if len(values) > 1 and np.ptp(values, axis=0).max() > 1e-6:

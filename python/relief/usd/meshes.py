@@ -16,6 +16,7 @@ UV_NAMES = ("st", "uv", "UVMap", "st0", "map1", "Texture_uv")
 SCHEMES = {"catmullClark": "catmark", "bilinear": "bilinear"}
 BOUNDARIES = {"edgeOnly": "edge-only", "edgeAndCorner": "edge-and-corner"}
 MAX_SHARPNESS = 10.0
+MAX_LEVEL = 8
 MAX_FINE_FACES = 250_000
 LEVELS = ((4096, 3), (65536, 2))  # subdivision levels of meshes up to so many faces; 1 above
 
@@ -75,9 +76,9 @@ def check_topology(context: Context, prim: Usd.Prim, positions, sizes, points) -
 
 
 def choose_level(context: Context, prim: Usd.Prim, face_count: int) -> int:
-    noted = prim.GetAttribute("relief:subdivision:level")
-    if noted and noted.Get() is not None:
-        return int(noted.Get())
+    noted = context.get_whole(prim, "relief:subdivision:level", 0, MAX_LEVEL)
+    if noted is not None:
+        return noted
     if context.options.subdivision_level is not None:
         return context.options.subdivision_level
     return next((level for most, level in LEVELS if face_count <= most), 1)
@@ -115,7 +116,8 @@ def read_creases(context: Context, mesh: UsdGeom.Mesh, raw: RawMesh) -> np.ndarr
     edge_count = int(np.maximum(lengths - 1, 0).sum())
     count = len(raw.positions)
     if (len(indices) != lengths.sum() or len(sharpness) not in (len(lengths), edge_count)
-            or len(corners) != len(corner_sharpness)
+            or len(corners) != len(corner_sharpness) or (lengths < 0).any()
+            or not np.isfinite(np.concatenate([sharpness, corner_sharpness])).all()
             or ((indices < 0) | (indices >= count)).any() or ((corners < 0) | (corners >= count)).any()):
         context.report.add(raw.prim, "its creases do not fit together and are left out")
         return None

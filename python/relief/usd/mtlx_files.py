@@ -5,7 +5,7 @@ import os
 import re
 import xml.etree.ElementTree as tree
 
-from pxr import Gf, Sdf, Usd, UsdShade
+from pxr import Gf, Sdf, Tf, Usd, UsdShade
 
 from .context import Context
 
@@ -14,6 +14,7 @@ TYPES = {"float": Sdf.ValueTypeNames.Float, "integer": Sdf.ValueTypeNames.Int, "
          "vector3": Sdf.ValueTypeNames.Float3, "vector4": Sdf.ValueTypeNames.Float4, "string": Sdf.ValueTypeNames.String,
          "filename": Sdf.ValueTypeNames.Asset}
 VECTORS = {2: Gf.Vec2f, 3: Gf.Vec3f, 4: Gf.Vec4f}
+COUNTS = {"color3": 3, "color4": 4, "vector2": 2, "vector3": 3, "vector4": 4}
 ROOT = "/MaterialX"
 MAX_DEPTH = 32
 
@@ -106,9 +107,14 @@ class Document:
             return text
         if kind == "boolean":
             return text == "true"
-        if kind == "integer":
-            return int(text)
-        numbers = [float(part) for part in re.split(r"[,\s]+", text.strip())]
+        try:
+            if kind == "integer":
+                return int(text)
+            numbers = [float(part) for part in re.split(r"[,\s]+", text.strip())]
+        except ValueError:
+            numbers = []
+        if len(numbers) != COUNTS.get(kind, 1):
+            raise ValueError(f"input {entry.get('name')} of type {kind} has the value {text!r}")
         return numbers[0] if len(numbers) == 1 else VECTORS[len(numbers)](*numbers)
 
 
@@ -131,8 +137,8 @@ def add_files(context: Context, paths: list) -> set:
             if file not in documents:
                 try:
                     documents[file] = Document(file)
-                except (OSError, ValueError, tree.ParseError) as error:
-                    context.report.add(prim, f"{os.path.basename(file)}: {error}")
+                except (OSError, ValueError, KeyError, tree.ParseError, Tf.ErrorException) as error:
+                    context.report.add(prim, f"{os.path.basename(file)}: {' '.join(str(error).split())}")
                     documents[file] = None
             if documents[file] is None:
                 continue

@@ -9,9 +9,10 @@ from pxr import Usd, UsdGeom
 
 from relief import _relief
 
-from .context import Options, make_error
+from .context import Options, is_finite, make_error
 
 WHOLE_STAGE = "all"
+MAX_SHUTTER = 16.0  # frames, either way
 
 
 @dataclasses.dataclass
@@ -48,9 +49,14 @@ def find_widest_shutter(stage: Usd.Stage) -> tuple:
     for prim in stage.Traverse():
         if prim.IsA(UsdGeom.Camera):
             camera = UsdGeom.Camera(prim)
-            opens.append(camera.GetShutterOpenAttr().Get() or 0.0)
-            closes.append(camera.GetShutterCloseAttr().Get() or 0.0)
+            opens.append(limit_shutter(camera.GetShutterOpenAttr().Get()))
+            closes.append(limit_shutter(camera.GetShutterCloseAttr().Get()))
     return min(opens), max(closes)
+
+
+def limit_shutter(value: float | None) -> float:
+    """What the camera of the scene may not have is refused where it is read."""
+    return min(max(value, -MAX_SHUTTER), MAX_SHUTTER) if value is not None and math.isfinite(value) else 0.0
 
 
 def list_times(context, attributes) -> list:
@@ -93,6 +99,8 @@ def list_transform_attributes(prim: Usd.Prim) -> list:
 def compute_world(context, prim: Usd.Prim, time: float) -> np.ndarray:
     """World of the scene from prim."""
     matrix = UsdGeom.XformCache(Usd.TimeCode(time)).GetLocalToWorldTransform(prim)
+    if not is_finite(matrix):
+        context.fail(prim, f"its transform is not finite at frame {time:g}")
     return context.root @ np.array(matrix, np.float64).T
 
 

@@ -59,12 +59,13 @@ def walk(context: Context, root: Usd.Prim, base: np.ndarray, depth: int = 0):
     while stack:
         place = stack.pop()
         prim = place.prim
-        if is_hidden(context, prim):
+        with context.reading(prim):
+            is_seen, (local, is_reset) = not is_hidden(context, prim), compute_local(context, prim)
+        if not is_seen:
             if context.range is not None and UsdGeom.Imageable(prim).GetVisibilityAttr().ValueMightBeTimeVarying():
                 context.report.add(prim, "visibility changes with time: it is hidden as at the frame")
             continue
         purpose = find_purpose(prim, place.purpose)
-        local, is_reset = compute_local(context, prim)
         matrix = (base if is_reset else place.matrix) @ local
         is_taken = purpose in context.options.purposes
         if prim.IsA(UsdGeom.PointInstancer):
