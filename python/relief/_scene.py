@@ -75,7 +75,10 @@ class _Collector:
         mesh = keys.get("file")
         if isinstance(mesh, Mesh):
             keys["file"] = f"memory:mesh {len(self.meshes)}"
-            self.meshes[keys["file"]] = mesh._collect()
+            try:
+                self.meshes[keys["file"]] = mesh._collect()
+            except (TypeError, ValueError) as error:
+                raise Error(str(error), kind="bad_input", where=f"meshes.{name}") from error
             if mesh.subdivision is not None:
                 keys.setdefault("subdivision", mesh.subdivision)
         return self.convert(keys, f"meshes.{name}")
@@ -95,7 +98,10 @@ def read_transform(value: Any, place: str) -> Any:
         if "matrix" in keys and np.asarray(keys["matrix"]).ndim == 2:
             keys.update(read_transform(keys["matrix"], f"{place}.matrix"))
         return keys
-    matrix = np.asarray(value, dtype=np.float64)
+    try:
+        matrix = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{place}: keys of the scene file or a matrix (4, 4) are needed, not {value!r:.60}") from None
     if matrix.shape != (4, 4):
         raise ValueError(f"{place}: the shape is {matrix.shape}, not (4, 4)")
     if not np.isfinite(matrix).all():

@@ -284,12 +284,22 @@ class MeshTest(unittest.TestCase):
         mesh = scenes.make_plane()
         scene = relief.Scene.from_mesh(mesh)
         mesh.corners = np.array([0, 1, 2, 9], np.uint32)
-        with self.assertRaisesRegex(ValueError, "index 9"):
+        with self.assertRaisesRegex(relief.Error, "^meshes.mesh: faces: index 9"):
             relief.render(scene)
         mesh = scenes.make_plane(creases=[[0, 1, 3]])
         mesh.creases = np.array([[0, 9]], np.int32)
-        with self.assertRaisesRegex(ValueError, "creases: index 9"):
+        with self.assertRaisesRegex(relief.Error, "^meshes.mesh: creases: index 9"):
             relief.render(mesh)
+        mesh = scenes.make_plane()
+        mesh.positions[0, 0] = np.nan
+        scene = relief.Scene()
+        scene.add(mesh, name="head")
+        with self.assertRaisesRegex(relief.Error, "^meshes.head: positions: NaN"):
+            scene.validate()
+        with self.assertRaisesRegex(TypeError, r"objects\[0\].transform: .* not 'a'"):
+            scene = relief.Scene()
+            scene.add(scenes.make_plane(), transform="a")
+            scene.validate()
 
     def test_a_preset_says_what_a_map_of_a_program_means(self):
         scene = relief.Scene.from_mesh(scenes.make_plane(), scenes.make_waves(), preset="blender-brush")
