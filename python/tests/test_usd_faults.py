@@ -117,6 +117,63 @@ class RefusedTest(FaultTest):
         self.check_refused("/l", "cannot be read: ", make_mesh("m"), wrong)
 
 
+class LeftOutTest(FaultTest):
+    """One bad mesh does not end a stage."""
+
+    def check_left_out(self, words, *prims, path="/bad", **options):
+        with self.subTest(words=words, path=path):
+            scene = self.load(*prims, make_mesh("good"), **options)
+            self.assertEqual([entry["name"] for entry in scene.objects], ["/good"])
+            self.check_reported(path, words)
+            relief.render(scene, size=(8, 8), spp=1)
+            with self.assertRaisesRegex(relief.Error, "no mesh that can be seen"):
+                self.load(*prims, **options)
+            self.check_reported(path, words)
+
+    def test_meshes_without_an_area(self):
+        for scheme in ("none", "catmullClark"):
+            for points in ("[(1, 1, 1), (1, 1, 1), (1, 1, 1), (1, 1, 1)]", "[(0, 0, 0), (1, 1, 1), (2, 2, 2), (3, 3, 3)]"):
+                mesh = make_mesh("bad", scheme=scheme)
+                self.check_left_out("no area", mesh.replace("[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]", points))
+        self.check_left_out("no area", make_prim("Cube", "bad", "double size = 0"))
+
+    def test_parts_without_an_area(self):
+        points = SQUARE.replace("(-1, 1, 0)]", "(-1, 1, 0), (5, 5, 5)]").replace("[4]", "[4, 3]").replace("2, 3]", "2, 3, 4, 4, 4]")
+        subset = make_prim("GeomSubset", "flat", 'uniform token elementType = "face"', 'uniform token familyName = "materialBind"',
+                           "int[] indices = [1]")
+        scene = self.load(make_prim("Mesh", "m", points, 'uniform token subdivisionScheme = "none"', inner=subset))
+        self.assertEqual([entry["name"] for entry in scene.objects], ["/m"])
+        self.check_reported("/m/flat", "no area")
+
+    def test_points_that_are_nowhere(self):
+        for value in ("nan", "inf", "1e20"):
+            for scheme in ("none", "catmullClark"):
+                self.check_left_out("point 1 is not finite", make_mesh("bad", scheme=scheme).replace("(1, -1, 0)", f"({value}, -1, 0)"))
+
+    def test_points_that_are_nowhere_later(self):
+        moving = SQUARE.replace("points = [", "points.timeSamples = { 1: [").replace("(-1, 1, 0)]", "(-1, 1, 0)], 3: [(nan, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)] }")
+        self.check_refused("/m", "is no mesh at frame", make_prim("Mesh", "m", moving), frames="1-3",
+                           folder=self.folder.name)
+
+    def test_creases_along_no_edge(self):
+        points = "point3f[] points = [(-1,-1,0), (0,-1,0), (1,-1,0), (1,1,0), (0,1,0), (-1,1,0)]"
+        faces = ("int[] faceVertexCounts = [4, 4]", "int[] faceVertexIndices = [0, 1, 4, 5, 1, 2, 3, 4]")
+        sharp = "int[] creaseLengths = [2, 2]", "float[] creaseSharpnesses = [2, 3]"
+        for dropped, creases in (("int[] holeIndices = [1]", "int[] creaseIndices = [2, 3, 0, 1]"), ("", "int[] creaseIndices = [0, 4, 0, 1]")):
+            with self.subTest(creases):
+                scene = self.load(make_prim("Mesh", "m", points, *faces, dropped, creases, *sharp))
+                self.check_reported("/m", "1 of its creases are along no edge")
+                mesh = scene.meshes["m"]
+                self.assertEqual((mesh.creases.tolist(), mesh.sharpness.tolist()), ([[0, 1]], [3]))
+                relief.render(scene, size=(8, 8), spp=1)
+        for line in ("int[] creaseLengths = [6, -2]", "int[] creaseLengths = [5, -1]"):
+            self.load(make_prim("Mesh", "m", points, *faces, "int[] creaseIndices = [0, 1, 2, 3]", line, "float[] creaseSharpnesses = [1, 1]"))
+            self.check_reported("/m", "creases do not fit together")
+        self.load(make_prim("Mesh", "m", points, *faces, "int[] creaseIndices = [0, 1]", "int[] creaseLengths = [2]",
+                            "float[] creaseSharpnesses = [nan]"))
+        self.check_reported("/m", "creases do not fit together")
+
+
 class MaterialTest(FaultTest):
     def test_values_of_materialx_that_do_not_fit_are_reported(self):
         bound = 'def Mesh "m" (\nprepend apiSchemas = ["MaterialBindingAPI"]\n) {\nrel material:binding = </Mtl/Materials/mm>' + SQUARE + "}\n"

@@ -6,6 +6,9 @@ import dataclasses
 import numpy as np
 
 
+SMALLEST_AREA = 1e-12  # of the square of the longest edge
+
+
 @dataclasses.dataclass
 class Faces:
     """The faces that are kept, counter-clockwise, and where each of their corners stands in the mesh of the file."""
@@ -56,6 +59,24 @@ def weld(positions: np.ndarray) -> np.ndarray:
     numbers = np.empty(len(places), np.int64)
     numbers[order] = np.cumsum(is_new)
     return numbers
+
+
+def find_next(faces: Faces) -> np.ndarray:
+    """For each corner the place of the next one of its face."""
+    starts = np.repeat(faces.starts(), faces.sizes)
+    return starts + (np.arange(len(faces.points)) - starts + 1) % np.repeat(faces.sizes, faces.sizes)
+
+
+def have_area(positions: np.ndarray, faces: Faces) -> np.ndarray:
+    """(F,) whether Relief keeps a face: it drops those without area."""
+    if len(faces.sizes) == 0:
+        return np.zeros(0, bool)
+    at = positions.astype(np.float32).astype(np.float64)[faces.points]
+    after = at[find_next(faces)]
+    longest = np.maximum.reduceat(((after - at) ** 2).sum(1), faces.starts())
+    origin = np.repeat(at[faces.starts()], faces.sizes, axis=0)
+    normals = np.add.reduceat(np.cross(at - origin, after - origin), faces.starts(), axis=0)
+    return np.linalg.norm(normals, axis=1) > SMALLEST_AREA * longest
 
 
 def compute_face_normals(positions: np.ndarray, faces: Faces) -> tuple:

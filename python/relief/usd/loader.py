@@ -169,10 +169,12 @@ def load_scene(path: str, options: Options, report: list | None) -> relief.Scene
     context.range = read_range(stage, options, path)
     if context.range is not None and options.time is None:
         context.time = Usd.TimeCode(context.range.first)
-    with context.reading(stage.GetPseudoRoot()):
-        read_stage(context)
-    if report is not None:
-        report += context.report.lines()
+    try:
+        with context.reading(stage.GetPseudoRoot()):
+            read_stage(context)
+    finally:  # it may say why nothing is left
+        if report is not None:
+            report += context.report.lines()
     return context.scene
 
 

@@ -9,7 +9,8 @@ from pxr import Usd, UsdGeom
 import relief
 
 from .context import Context, to_array
-from .corners import Faces, compute_creased_normals, compute_normals, index_corners, make_faces
+from .corners import (Faces, compute_creased_normals, compute_normals, find_next, have_area, index_corners, make_faces,
+                      weld)
 from .refine import Cage, refine
 
 UV_NAMES = ("st", "uv", "UVMap", "st0", "map1", "Texture_uv")
@@ -17,6 +18,7 @@ SCHEMES = {"catmullClark": "catmark", "bilinear": "bilinear"}
 BOUNDARIES = {"edgeOnly": "edge-only", "edgeAndCorner": "edge-and-corner"}
 MAX_SHARPNESS = 10.0
 MAX_LEVEL = 8
+FARTHEST = 1e18  # of points from the origin
 MAX_FINE_FACES = 250_000
 LEVELS = ((4096, 3), (65536, 2))  # subdivision levels of meshes up to so many faces; 1 above
 
@@ -38,12 +40,17 @@ class RawMesh:
 
 
 def read_mesh(context: Context, prim: Usd.Prim) -> RawMesh | None:
-    """None where the prim has no faces."""
+    """None where the prim has no faces, or points that are nowhere."""
     mesh = UsdGeom.Mesh(prim)
     positions = to_array(context.get(mesh.GetPointsAttr()), 3)
     sizes = to_array(context.get(mesh.GetFaceVertexCountsAttr()), dtype=np.int64)
     points = to_array(context.get(mesh.GetFaceVertexIndicesAttr()), dtype=np.int64)
     check_topology(context, prim, positions, sizes, points)
+    is_bad = ~(np.abs(positions) <= FARTHEST).all(1)
+    if is_bad.any():
+        row = int(np.flatnonzero(is_bad)[0])
+        context.report.add(prim, f"point {row} is not finite, or farther out than {FARTHEST:g}: it is left out")
+        return None
     is_left = context.get(mesh.GetOrientationAttr()) == UsdGeom.Tokens.leftHanded
     holes = to_array(context.get(mesh.GetHoleIndicesAttr()), dtype=np.int64)
     faces = make_faces(sizes, points, is_left, holes)
@@ -70,9 +77,6 @@ def check_topology(context: Context, prim: Usd.Prim, positions, sizes, points) -
         context.fail(prim, f"faceVertexCounts sum up to {sizes.sum()}, but there are {len(points)} faceVertexIndices")
     if len(points) and (points.min() < 0 or points.max() >= len(positions)):
         context.fail(prim, f"faceVertexIndices are {points.min()} to {points.max()}, but there are {len(positions)} points")
-    if not np.isfinite(positions).all():
-        row = int(np.flatnonzero(~np.isfinite(positions).all(1))[0])
-        context.fail(prim, f"point {row} is not finite")
 
 
 def choose_level(context: Context, prim: Usd.Prim, face_count: int) -> int:
@@ -127,7 +131,19 @@ def read_creases(context: Context, mesh: UsdGeom.Mesh, raw: RawMesh) -> np.ndarr
     rows = [np.column_stack([indices[first], indices[first + 1], values]), np.column_stack([corners, corners, corner_sharpness])]
     found = np.concatenate(rows).astype(np.float64)
     found[:, 2] = np.clip(found[:, 2], 0, MAX_SHARPNESS)
-    return found if len(found) else None
+    is_kept = are_edges(raw, found[:, :2].astype(np.int64))
+    if not is_kept.all():
+        context.report.add(raw.prim, f"{int((~is_kept).sum())} of its creases are along no edge and are left out")
+    return found[is_kept] if is_kept.any() else None
+
+
+def are_edges(raw: RawMesh, ends: np.ndarray) -> np.ndarray:
+    """Which pairs of points are the ends of an edge of a face that is there, or one point twice."""
+    points, faces = weld(raw.positions), raw.faces
+    is_there = np.repeat(have_area(raw.positions, faces), faces.sizes)
+    edges = np.stack([points[faces.points], points[faces.points[find_next(faces)]]], 1)[is_there]
+    keys = [np.sort(pairs, axis=1) @ [len(points), 1] for pairs in (edges, points[ends])]
+    return (ends[:, 0] == ends[:, 1]) | np.isin(keys[1], keys[0])
 
 
 def read_normals(context: Context, mesh: UsdGeom.Mesh, counts: tuple):

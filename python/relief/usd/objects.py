@@ -9,7 +9,7 @@ from pxr import Usd, UsdGeom, UsdShade
 import relief
 
 from .context import Context
-from .corners import Faces
+from .corners import Faces, have_area
 from .deforming import write_moving_mesh
 from .displacements import find_noted
 from .instances import write_instances
@@ -55,7 +55,7 @@ class ObjectReader:
         key = find_key(prim)
         if key not in self.raw:
             read = read_mesh if prim.IsA(UsdGeom.Mesh) else read_shape
-            self.raw[key] = read(self.context, prim)
+            self.raw[key] = self.keep_solid(read(self.context, prim))
         raw = self.raw[key]
         if raw is None:
             return
@@ -63,8 +63,17 @@ class ObjectReader:
         if raw.is_subdivided() and (len(parts) > 1 or not self.is_manifold(key, raw)):
             raw = self.refine(key, raw, parts)
         for part in parts:
-            if len(part.faces.sizes):
+            if len(parts) > 1 and not have_area(raw.positions, part.faces).any():
+                self.context.report.add(part.prim, "its faces have no area: it is left out")
+            else:
                 self.add_part(item, raw, part, len(parts) > 1)
+
+    def keep_solid(self, raw: RawMesh | None) -> RawMesh | None:
+        """None where no face has an area, which a scene refuses."""
+        if raw is not None and len(raw.faces.sizes) and not have_area(raw.positions, raw.faces).any():
+            self.context.report.add(raw.prim, "its faces have no area: it is left out")
+            return None
+        return raw
 
     def split(self, prim: Usd.Prim, raw: RawMesh) -> list:
         """The mesh in its subsets of materials, and what is in none of them."""
@@ -184,6 +193,8 @@ class ObjectReader:
     def remake(self, raw: RawMesh, part: Part, uvs: tuple, with_normals: bool, is_fine: bool) -> relief.Mesh:
         """A part at another time of the context."""
         again = read_mesh(self.context, raw.prim)
+        if again is None:
+            self.context.fail(raw.prim, f"is no mesh{self.context.describe_time()}", "its points have to be finite at all frames")
         if is_fine:
             again = refine_mesh(self.context, again, self.refined_uvs[find_key(raw.prim)])
         return make_mesh(self.context, again, part.faces, uvs, with_normals)
