@@ -51,7 +51,8 @@ class MeshExport:
                 parts = self._add_cage(evaluated, cage, modifier)
             if parts is not None:
                 return parts
-        if evaluated.type == "MESH":
+        # In Edit Mode the faces are not in the data itself.
+        if evaluated.type == "MESH" and not evaluated.data.is_editmode:
             return self._add_mesh(evaluated, evaluated.data)
         mesh = evaluated.to_mesh()
         try:
