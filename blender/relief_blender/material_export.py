@@ -1,6 +1,7 @@
 """Materials of Blender as materials and displacements of Relief, each once."""
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 import relief
 
@@ -50,8 +51,9 @@ class MaterialExport:
 
     def _make(self, material):
         if material is None:
-            self._scene.materials.setdefault("default", relief.Material(base_color=[0.8, 0.8, 0.8]))
-            return ExportedMaterial("default")
+            name = find_free_name("default")
+            self._scene.materials[name] = relief.Material(base_color=[0.8, 0.8, 0.8])
+            return ExportedMaterial(name)
         name = material.name_full
 
         def report(text):
@@ -114,6 +116,15 @@ class MaterialExport:
             else:
                 result["geometry_opacity" if key == "opacity" else key] = writer.number(value, label)
         return result
+
+
+def find_free_name(stem):
+    """A name that no material of the file has."""
+    taken, name, number = {material.name_full for material in bpy.data.materials}, stem, 1
+    while name in taken:
+        number += 1
+        name = f"{stem} {number}"
+    return name
 
 
 def resolve_conflicts(keys, report, find_mean):

@@ -2,6 +2,8 @@
 from support import BlenderTest, main, make_grid, make_material  # first: it makes the add-on known
 import bpy
 import numpy as np
+from relief_blender.report import Report
+from relief_blender.scene_export import SceneExport
 
 
 class Modes(BlenderTest):
@@ -37,6 +39,27 @@ class Modes(BlenderTest):
         ob.data.polygons[1].material_index = 1
         ob.modifiers.new("subdivision", "SUBSURF")
         self.check_in_edit_mode(ob)
+
+
+class Materials(BlenderTest):
+    def export(self):
+        exporter = SceneExport(bpy.context.evaluated_depsgraph_get(), Report())
+        return exporter.run()
+
+    def test_a_material_called_default_is_not_that_of_objects_without_one(self):
+        for names in (("with", "without"), ("without", "with")):  # whichever is taken over first
+            for name in names:
+                ob = make_grid(1)
+                ob.name = name
+                if name == "with":
+                    make_material(ob, Base_Color=(1, 0, 0)).name = "default"
+            scene = self.export()
+            colors = {o["name"]: scene.materials[o["material"]]["base_color"] for o in scene.objects}
+            np.testing.assert_allclose(colors["with"], [1, 0, 0], atol=1e-6)
+            np.testing.assert_allclose(colors["without"], [0.8, 0.8, 0.8], atol=1e-6)
+            for ob in [bpy.data.objects[name] for name in names]:
+                bpy.data.objects.remove(ob)
+            bpy.data.materials.remove(bpy.data.materials["default"])
 
 
 if __name__ == "__main__":
