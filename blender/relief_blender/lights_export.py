@@ -13,6 +13,7 @@ from .node_values import NodeValues
 from .values import Constant
 
 ELLIPSE_TEXELS = 256
+LEAST, MOST = 1e-18, 1e18  # lengths that Relief takes
 
 
 def find_color(light, report):
@@ -57,7 +58,7 @@ def make_area(light, matrix, strength, report):
     if getattr(light, "spread", math.pi) < math.pi - 1e-3:
         report("its spread is left out: it shines to all sides of its face")
     keys = {"strength": strength / math.pi, "direction": (-matrix[:3, 2]).tolist(), "up": matrix[:3, 1].tolist()}
-    if is_round and abs(width / height - 1) < 1e-4:
+    if is_round and abs(width - height) < 1e-4 * height:
         keys.pop("up")
         return relief.Light(type="disk", radius=width / 2, **keys)
     if is_round:
@@ -69,8 +70,9 @@ def make_spot(light, matrix, strength):
     """Cycles fades over part of the cosine, Relief over part of the angle."""
     half = light.spot_size / 2
     edge = math.acos(min(math.cos(half) + (1 - math.cos(half)) * light.spot_blend, 1.0))
-    return relief.Light(type="spot", direction=(-matrix[:3, 2]).tolist(), angle_degrees=math.degrees(light.spot_size),
-                        blend=1 - edge / half, radius=light.shadow_soft_size, strength=strength / (4 * math.pi))
+    angle_degrees = min(max(math.degrees(light.spot_size), 0.001), 180.0)  # 180 is more in 32 bits
+    return relief.Light(type="spot", direction=(-matrix[:3, 2]).tolist(), angle_degrees=angle_degrees, blend=1 - edge / half,
+                        radius=light.shadow_soft_size, strength=strength / (4 * math.pi))
 
 
 def make_light(light, matrix_world, report):
@@ -78,7 +80,7 @@ def make_light(light, matrix_world, report):
     matrix = axes.convert_matrix(matrix_world)
     color = find_color(light, report)
     strength = float(light.energy) * float(color.max(initial=0))
-    color = (color / color.max()).tolist() if color.max() > 0 else [0, 0, 0]
+    color = (color / color.max()).tolist() if 0 < color.max() < math.inf else [0, 0, 0]
     if strength < 0:
         report("a negative light is left out")
         strength = 0.0
@@ -99,6 +101,27 @@ def make_light(light, matrix_world, report):
         result["position"] = matrix[:3, 3].tolist()
     result["color"] = color
     return result
+
+
+def is_finite(light):
+    """Whether all numbers of a relief.Light are."""
+    numbers = [light[key] for key in ("strength", "radius", "width", "height") if key in light]
+    numbers += [v for key in ("color", "position", "direction", "up") for v in light.get(key, ())]
+    return bool(np.all(np.abs(numbers) < 3e38))
+
+
+def find_fault(light):
+    """Why a relief.Light cannot be rendered, or ""."""
+    if not is_finite(light):
+        return "its power, colour, size or transform is not finite"
+    sizes = [light[key] for key in ("width", "height") if key in light]
+    if light["type"] == "disk":
+        sizes.append(light["radius"])
+    if not all(LEAST <= size <= MOST for size in sizes):
+        return "its face has no area"
+    if any(key in light and np.linalg.norm(light[key]) < LEAST for key in ("direction", "up")):
+        return "it has no direction by its scale"
+    return ""
 
 
 def find_links(light_object):
@@ -127,12 +150,16 @@ def link_light(light, light_object, names):
 
 
 def export_light(light_object, matrix_world, report):
-    """The relief.Light of a light, without its links."""
+    """The relief.Light of a light, without its links; None where it cannot be rendered."""
     name = light_object.original.name_full
 
     def tell(text):
         report.add("light", name, text)
     result = make_light(light_object.data, matrix_world, tell)
+    fault = find_fault(result)
+    if fault:
+        tell(f"{fault}: it is left out")
+        return None
     result["visible_to_camera"] = bool(light_object.original.visible_camera)
     if not light_object.data.use_shadow:
         tell("a light without shadows has shadows")

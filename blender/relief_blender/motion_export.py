@@ -7,7 +7,7 @@ import relief
 
 from . import axes, motion_keys
 from .camera_export import export_camera
-from .lights_export import make_light
+from .lights_export import is_finite, make_light
 from .material_export import MaterialExport
 from .motion_meshes import MeshMotion
 from .report import Report
@@ -18,6 +18,7 @@ from .world_export import export_world
 SECTIONS = ("camera", "environment", "materials", "displacements", "objects", "lights")
 STILL = "motion blur: its transform shears, is mirrored meanwhile or has no volume: it stays still"
 COMES = "motion blur: it comes or goes while the shutter is open: it is there or not as at the frame"
+NOT_FINITE = "motion blur: its power, colour, size or transform is not finite meanwhile: it stays as at the frame"
 STRAIGHT = "motion blur: its transform shears: its points move straight from one step to the next"
 
 
@@ -102,7 +103,8 @@ class MotionExport:
                 continue
             self._matrices[key][step] = axes.convert_matrix(instance.matrix_world)
             if made.lights:
-                self._lights[key][step] = make_light(instance.object.data, instance.matrix_world, lambda text: None)
+                light = make_light(instance.object.data, instance.matrix_world, lambda text: None)
+                self._lights[key][step] = light if is_finite(light) else None
             if made.objects:
                 self._meshes.look_at(instance, made.objects)
 
@@ -165,6 +167,9 @@ class MotionExport:
             self._report.add("light", key[0], f"motion blur: its {name} stays as at the frame")
         times, matrices = self._choose(self._matrices[key], self._steps[key])
         _, samples = self._choose(self._lights[key], self._steps[key])
+        if lights and None in samples:
+            self._report.add("light", key[0], NOT_FINITE)
+            return
         for light in lights if samples else []:
             moving = {"position", "direction", "up"}
             base = {name: value for name, value in light.items() if name in samples[0] and name not in moving}

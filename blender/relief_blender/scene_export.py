@@ -75,6 +75,8 @@ class SceneExport:
 
     def _add_light(self, instance):
         light = export_light(instance.object, instance.matrix_world, self._report)
+        if light is None:
+            return
         self.scene.lights.append(light)
         self._light_objects.append(instance.object.original)
         self.instances[identify(instance)] = Instance([], [light])

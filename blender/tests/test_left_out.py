@@ -1,5 +1,8 @@
 """What a file may hold that is not an ordinary scene: it is rendered as by Cycles, or left out and named."""
-from support import BlenderTest, main, make_grid, make_material  # first: it makes the add-on known
+from support import (BlenderTest, add_light, main, make_grid, make_material,  # first: it makes the add-on known
+                     set_world)
+import math
+
 import bpy
 import numpy as np
 from relief_blender.report import Report
@@ -60,6 +63,59 @@ class Materials(BlenderTest):
             for ob in [bpy.data.objects[name] for name in names]:
                 bpy.data.objects.remove(ob)
             bpy.data.materials.remove(bpy.data.materials["default"])
+
+
+class Lights(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        ground = make_grid(1)
+        ground.scale = (3, 3, 1)
+        make_material(ground)
+
+    def test_a_spot_of_180_degrees(self):
+        set_world(bpy.context.scene.world, (0, 0, 0))
+        light = add_light("SPOT", (0.5, 0, 2), energy=300.0)
+        light.data.spot_size, light.data.shadow_soft_size = math.pi, 0.1
+        self.compare_brightness(tolerance=0.04)
+
+    def check_left_out(self, kind, text, prepare):
+        plain = self.render("RELIEF", samples=1).brightness
+        light = add_light(kind)
+        prepare(light)
+        with self.subTest(kind=kind, text=text):
+            self.assertAlmostEqual(self.render("RELIEF", samples=1).brightness, plain, delta=1e-5)
+            self.assertEqual(self.report(), [f'light "light": {text}: it is left out'])
+        bpy.data.objects.remove(light)
+        bpy.data.lights.remove(bpy.data.lights["light"])
+
+    def test_lights_that_cannot_be_rendered_are_left_out(self):
+        def scale(*scales):
+            return lambda light: setattr(light, "scale", scales)
+
+        def shape(name):
+            return lambda light: (setattr(light.data, "shape", name), setattr(light.data, "size", 0))
+        self.check_left_out("SUN", "it has no direction by its scale", scale(0, 0, 0))
+        self.check_left_out("SPOT", "it has no direction by its scale", scale(1, 1, 0))
+        self.check_left_out("AREA", "its face has no area", scale(0, 0, 0))
+        self.check_left_out("AREA", "its face has no area", shape("SQUARE"))
+        self.check_left_out("AREA", "its face has no area", shape("DISK"))
+        not_finite = "its power, colour, size or transform is not finite"
+        self.check_left_out("POINT", not_finite, lambda light: setattr(light.data, "energy", math.inf))
+        self.check_left_out("POINT", not_finite, lambda light: setattr(light, "location", (math.nan, 0, 0)))
+
+    def test_a_light_without_power_or_size_at_the_end_of_the_shutter(self):
+        scene = bpy.context.scene
+        for name, least, text in (("scale", (0, 0, 0), ""), ("location", (0, 0, math.inf), "not finite meanwhile")):
+            light = add_light("AREA")
+            for frame in (2, 3):
+                setattr(light, name, getattr(light, name) if frame == 2 else least)
+                light.keyframe_insert(name, frame=frame)
+            scene.frame_set(2)
+            scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 2.0
+            with self.subTest(name=name):
+                self.render("RELIEF", samples=1)
+                self.assertIn(text, " ".join(self.report()))
+            bpy.data.objects.remove(light)
 
 
 if __name__ == "__main__":
