@@ -33,11 +33,11 @@ class MaterialExport:
     """Adds materials to a relief.Scene. What Relief has no keys for goes to the report under their names.
 
     `sources`: the original bpy.types.Material of each name. `derived`: displacements that are others but for a factor of
-    their scale, as (name of the other, factor)."""
+    their scale, as (name of the other, factor). `without_normals`: {name: name of the same without its normal map}."""
 
     def __init__(self, scene, report, tiles=None):
         self._scene, self._report, self._done, self._tiles = scene, report, {}, tiles
-        self.sources, self.derived = {}, {}
+        self.sources, self.derived, self.without_normals = {}, {}, {}
 
     def export(self, material):
         """`material` may be None: Blender's grey."""
@@ -48,6 +48,19 @@ class MaterialExport:
             if material is not None:
                 self.sources[key] = material.original
         return self._done[key]
+
+    def leave_out_normal_map(self, name):
+        """The name of a material of the scene without its normal map, which needs uvs; None: it has no normal map."""
+        if "geometry_normal" not in self._scene.materials[name]:
+            return None
+        if name not in self.without_normals:
+            self.without_normals[name] = find_free_name(f"{name} without its normal map")
+            self.copy_without_normal_map(name)
+        return self.without_normals[name]
+
+    def copy_without_normal_map(self, name):
+        keys = {key: value for key, value in self._scene.materials[name].items() if key != "geometry_normal"}
+        self._scene.materials[self.without_normals[name]] = relief.Material(keys)
 
     def _make(self, material):
         if material is None:

@@ -133,8 +133,8 @@ class MeshExport:
         uvs = uv_indices = None
         if arrays.uvs is not None:
             uvs, uv_indices = mesh_arrays.index_equal(arrays.corners, self._place_uvs(arrays.uvs, material.base))
-        elif material.displacement is not None:
-            self._report.add("object", evaluated.original.name_full, "it has no uv map: it is not displaced")
+        else:
+            material = self._leave_out_maps(evaluated, material)
         if arrays.further_uvs:
             keys["further_uvs"] = {number: mesh_arrays.index_equal(arrays.corners, further)
                                    for number, further in enumerate(arrays.further_uvs, 1)}
@@ -142,8 +142,16 @@ class MeshExport:
         self._scene.meshes[name] = relief.Mesh(
             arrays.positions, (arrays.sizes, arrays.corners), uvs=uvs, uv_indices=uv_indices, normals=normals,
             normal_indices=normal_indices, **{key: value for key, value in keys.items() if value is not None})
-        displacement = material.displacement if uvs is not None else None
-        return MeshPart(name, material.material, displacement, material.is_world_height)
+        return MeshPart(name, material.material, material.displacement, material.is_world_height)
+
+    def _leave_out_maps(self, evaluated, material):
+        """The ExportedMaterial of a mesh without uvs."""
+        if material.displacement is not None:
+            self._report.add("object", evaluated.original.name_full, "it has no uv map: it is not displaced")
+        plain = self._materials.leave_out_normal_map(material.material)
+        if plain is not None:
+            self._report.add("object", evaluated.original.name_full, "it has no uv map: its normal map is left out")
+        return material._replace(material=plain or material.material, displacement=None)
 
     @staticmethod
     def _place_uvs(uvs, base):

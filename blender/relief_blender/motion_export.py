@@ -190,6 +190,8 @@ class MotionExport:
                 motion_keys.merge(scene.displacements[name], times, samples, lambda what: tell(f"displacement {what}"))
             elif name in scene.displacements or any(sample is not None for sample in samples):
                 tell("displacement")
+            if name in self._exporter.materials.without_normals:
+                self._exporter.materials.copy_without_normal_map(name)
         for name, (source, factor) in self._exporter.materials.derived.items():
             self._copy_keys(scene.displacements[source], scene.displacements[name], factor)
 

@@ -1,10 +1,13 @@
 """What a file may hold that is not an ordinary scene: it is rendered as by Cycles, or left out and named."""
-from support import (BlenderTest, add_light, main, make_grid, make_material,  # first: it makes the add-on known
-                     set_world)
+from support import (BlenderTest, add_light, main, make_grid, make_image, make_material,  # first: it makes the
+                     set_world)  # add-on known
 import math
+from unittest import mock
 
 import bpy
 import numpy as np
+import relief
+from relief_blender import engine
 from relief_blender.report import Report
 from relief_blender.scene_export import SceneExport
 
@@ -63,6 +66,49 @@ class Materials(BlenderTest):
             for ob in [bpy.data.objects[name] for name in names]:
                 bpy.data.objects.remove(ob)
             bpy.data.materials.remove(bpy.data.materials["default"])
+
+    def add_normal_map(self, material):
+        tree = material.node_tree
+        node, texture = tree.nodes.new("ShaderNodeNormalMap"), tree.nodes.new("ShaderNodeTexImage")
+        texture.image = make_image("normals", np.full((4, 4, 3), (0.8, 0.5, 0.8)))
+        tree.links.new(texture.outputs["Color"], node.inputs["Color"])
+        tree.links.new(node.outputs[0], tree.nodes["Principled BSDF"].inputs["Normal"])
+
+    def test_a_normal_map_on_a_mesh_without_uvs_is_left_out(self):
+        ob = make_grid(2)
+        ob.data.uv_layers.remove(ob.data.uv_layers[0])
+        material = make_material(ob, Roughness=1.0)
+        self.add_normal_map(material)
+        add_light("SUN", (3, 0, 3), energy=3.0)
+        ours = self.render("RELIEF").brightness
+        self.assertEqual(self.report(), ['object "thing": it has no uv map: its normal map is left out'])
+        tree = material.node_tree
+        tree.links.remove(tree.nodes["Principled BSDF"].inputs["Normal"].links[0])
+        self.assertAlmostEqual(self.render("RELIEF").brightness, ours, delta=1e-5)
+        self.add_normal_map(material)
+        other = make_grid(2)  # keeps it
+        other.location.z, other.name = 0.5, "other"
+        other.data.materials.append(material)
+        scene = self.export()
+        self.assertEqual({o["name"]: "geometry_normal" in scene.materials[o["material"]] for o in scene.objects},
+                         {"thing": False, "other": True})
+
+    def test_materials_without_their_normal_map_move(self):
+        ob = make_grid(2)
+        ob.data.uv_layers.remove(ob.data.uv_layers[0])
+        material, scene = make_material(ob), bpy.context.scene
+        self.add_normal_map(material)
+        socket = material.node_tree.nodes["Principled BSDF"].inputs["Roughness"]
+        for frame, value in ((0, 0.0), (2, 1.0)):
+            socket.default_value = value
+            socket.keyframe_insert("default_value", frame=frame)
+        scene.frame_set(1)
+        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+        with mock.patch.object(engine, "RenderJob", side_effect=relief.Error("enough")) as job, \
+                self.assertRaises(RuntimeError):
+            self.render("RELIEF")
+        exported = job.call_args.args[0]
+        self.assertIn("keys", exported.materials[exported.objects[0]["material"]]["roughness"])
 
 
 class Lights(BlenderTest):
