@@ -107,7 +107,13 @@ def export_camera(depsgraph, report, original=None):
     original = original or scene.camera
     if original is None:
         raise relief.Error("the scene has no camera", hint="Add > Camera, then Scene Properties > Camera")
+    if original.type != "CAMERA":
+        raise relief.Error(f'object "{original.name_full}" is used as a camera but is none',
+                           hint="choose a camera in Scene Properties > Camera")
     camera = original.evaluated_get(depsgraph)
+    matrix = np.array(camera.matrix_world)
+    if not np.all(np.isfinite(matrix)) or np.min(axes.find_axis_scale(matrix)) == 0:
+        raise relief.Error(f'camera "{camera.name}" has no direction by its scale, or its transform is not finite')
 
     def tell(text):
         report.add("camera", camera.name, text)

@@ -7,6 +7,7 @@ import relief
 from . import axes, images, values
 from .node_tree import NotExpressible, Wire, follow
 from .node_values import NodeValues
+from .textures import LARGEST
 from .values import Constant, Place, Textured
 
 # As the node has them: red along the tangent, green along the normal, blue along the bitangent.
@@ -97,6 +98,9 @@ class DisplacementReader:
         if isinstance(scale, Textured):
             value = values.combine(lambda v, s: (v - midlevel) * s, [value, scale], self._values.texels)
             midlevel, scale = 0.0, values.make_constant(1)
+        numbers = [midlevel, scale.number, *(value.rgb if isinstance(value, Constant) else value.factor)]
+        if not np.all(np.abs(numbers) < LARGEST):  # NaN is not
+            raise NotExpressible("a scale, midlevel or value that is not finite")
         if isinstance(value, Constant):
             tiles = {1001: value.rgb.reshape(1, 1, 3)}
             value = Textured(Place(wrap="clamp"), tiles=tiles)

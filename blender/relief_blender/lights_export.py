@@ -10,6 +10,7 @@ import relief
 from . import axes
 from .node_tree import NotExpressible, Wire, find_output, follow
 from .node_values import NodeValues
+from .textures import LARGEST
 from .values import Constant
 
 ELLIPSE_TEXELS = 256
@@ -107,7 +108,7 @@ def is_finite(light):
     """Whether all numbers of a relief.Light are."""
     numbers = [light[key] for key in ("strength", "radius", "width", "height") if key in light]
     numbers += [v for key in ("color", "position", "direction", "up") for v in light.get(key, ())]
-    return bool(np.all(np.abs(numbers) < 3e38))
+    return bool(np.all(np.abs(numbers) < LARGEST))
 
 
 def find_fault(light):

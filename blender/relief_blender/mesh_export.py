@@ -4,7 +4,7 @@ from typing import NamedTuple
 import numpy as np
 import relief
 
-from . import mesh_arrays, subdivision, topology
+from . import mesh_arrays, mesh_repair, subdivision, topology
 from .values import Place
 
 
@@ -82,8 +82,12 @@ class MeshExport:
             return None
         material = next(iter(used.values()))
         arrays = mesh_arrays.read_mesh(cage, material.base.uv_map, material.further)
+        repaired = mesh_repair.repair(arrays, report)
+        if repaired is None:
+            return []
+        arrays = repaired[0]
         if modifier.subdivision_type != "CATMULL_CLARK":
-            return [self._add(evaluated, arrays, material)]
+            return self._add(evaluated, arrays, material)
         if not topology.can_be_subdivided(arrays):
             report("its cage has points at one place, edges of three faces or faces turned against each other: "
                    "it is subdivided by its Levels")
@@ -91,15 +95,16 @@ class MeshExport:
         subdivision.report_differences(modifier, report)
         keys = subdivision.make_keys(modifier, adaptive, self._is_render, len(arrays.sizes), material.displacement is not None)
         creases = mesh_arrays.read_creases(cage) if modifier.use_creases else None
-        return [self._add(evaluated, arrays, material, subdivision=keys,
-                          creases=creases if creases and len(creases[0]) else None)]
+        return self._add(evaluated, arrays, material, subdivision=keys,
+                         creases=creases if creases and len(creases[0]) else None)
 
     def _add_mesh(self, evaluated, mesh):
         used = self._used(evaluated, mesh)
         if len(used) == 1:
             material = next(iter(used.values()))
-            return [self._add(evaluated, mesh_arrays.read_mesh(mesh, material.base.uv_map, material.further), material)]
-        return [self._add_part(evaluated, mesh, slot, material, max(used)) for slot, material in used.items()]
+            return self._add(evaluated, mesh_arrays.read_mesh(mesh, material.base.uv_map, material.further), material)
+        parts = [self._add_part(evaluated, mesh, slot, material, max(used)) for slot, material in used.items()]
+        return [part for some in parts for part in some]
 
     def _add_part(self, evaluated, mesh, slot, material, last):
         """The faces of one material; displaced ones take their frames from the whole mesh, so that borders meet."""
@@ -128,7 +133,13 @@ class MeshExport:
         return name
 
     def _add(self, evaluated, arrays, material, **keys):
-        """Adds a mesh to the scene."""
+        """Adds a mesh to the scene. A list of its MeshPart, empty where it cannot be rendered."""
+        repaired = mesh_repair.repair(arrays, lambda text: self._report.add("object", evaluated.original.name_full, text))
+        if repaired is None:
+            return []
+        arrays, mask = repaired
+        if keys.get("tangents") is not None:
+            keys["tangents"] = keys["tangents"][mask]
         name = self._make_name(evaluated, material)
         uvs = uv_indices = None
         if arrays.uvs is not None:
@@ -142,7 +153,7 @@ class MeshExport:
         self._scene.meshes[name] = relief.Mesh(
             arrays.positions, (arrays.sizes, arrays.corners), uvs=uvs, uv_indices=uv_indices, normals=normals,
             normal_indices=normal_indices, **{key: value for key, value in keys.items() if value is not None})
-        return MeshPart(name, material.material, material.displacement, material.is_world_height)
+        return [MeshPart(name, material.material, material.displacement, material.is_world_height)]
 
     def _leave_out_maps(self, evaluated, material):
         """The ExportedMaterial of a mesh without uvs."""

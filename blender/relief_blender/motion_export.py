@@ -19,6 +19,7 @@ SECTIONS = ("camera", "environment", "materials", "displacements", "objects", "l
 STILL = "motion blur: its transform shears, is mirrored meanwhile or has no volume: it stays still"
 COMES = "motion blur: it comes or goes while the shutter is open: it is there or not as at the frame"
 NOT_FINITE = "motion blur: its power, colour, size or transform is not finite meanwhile: it stays as at the frame"
+NO_PLACE = "motion blur: its transform is not finite meanwhile"
 STRAIGHT = "motion blur: its transform shears: its points move straight from one step to the next"
 
 
@@ -101,7 +102,11 @@ class MotionExport:
             made = self._exporter.instances.get(key)
             if made is None or not self._steps.get(key) or not instance.show_self:
                 continue
-            self._matrices[key][step] = axes.convert_matrix(instance.matrix_world)
+            matrix = axes.convert_matrix(instance.matrix_world)
+            if not np.all(np.isfinite(matrix)):
+                self._report.add("object", key[0], NO_PLACE)
+                continue
+            self._matrices[key][step] = matrix
             if made.lights:
                 light = make_light(instance.object.data, instance.matrix_world, lambda text: None)
                 self._lights[key][step] = light if is_finite(light) else None

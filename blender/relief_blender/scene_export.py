@@ -8,6 +8,7 @@ from . import axes, faults
 from .lights_export import export_light, link_light
 from .material_export import MaterialExport
 from .mesh_export import MeshExport
+from .mesh_repair import FARTHEST
 from .world_export import export_world
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -105,6 +106,9 @@ class SceneExport:
         if not self._is_shown(evaluated):
             return
         matrix = axes.convert_matrix(instance.matrix_world)
+        if not np.all(np.abs(matrix) < FARTHEST):  # NaN is not
+            self._report.add("object", evaluated.original.name_full, "its transform is not finite: it is left out")
+            return
         if abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
             self._report.add("object", evaluated.original.name_full, "it has no volume by its scale: it is left out")
             return

@@ -4,6 +4,8 @@ import numpy as np
 from . import images
 from .values import Constant, Place
 
+LARGEST = 3e38  # number that Relief takes; Blender has 3.4e38 for infinity
+
 
 class TextureWriter:
     """Makes the values of keys. `base` is the place of the mesh's own uvs: see MaterialExport. `further`: the uv maps of
@@ -26,7 +28,7 @@ class TextureWriter:
     def normal(self, value, scale):
         keys = self._place(value, "normal map", has_own_set=False)
         keys["file"] = self._file(value, np.ones(3)) or self._arrays(value, is_number=False)
-        keys["scale"] = float(np.clip(scale, 0, 1000))
+        keys["scale"] = float(self._limit(np.array([scale]), "strength of the normal map", 0.0, 1000.0)[0])
         return keys
 
     def mean(self, value):
@@ -36,6 +38,10 @@ class TextureWriter:
 
     def _limit(self, array, label, least, most):
         limited = np.clip(array, least, most)
+        is_finite = np.abs(limited) < LARGEST
+        if not np.all(is_finite):
+            self._report(f"{label} is not finite: {least:g} is used")
+            return np.where(is_finite, limited, least)
         if np.any(np.abs(limited - array) > 1e-6):
             self._report(f"{label} {np.round(array, 3).tolist()} is limited to [{least:g}, {most:g}]")
         return limited
@@ -43,7 +49,7 @@ class TextureWriter:
     def _texture(self, value, label, most, is_number):
         keys = self._place(value, label)
         keys["file"] = self._file(value, value.factor)
-        if keys["file"] is not None and np.all(value.factor >= 0) and np.all(value.factor <= most):
+        if keys["file"] is not None and np.all(value.factor >= 0) and np.all(value.factor <= min(most, LARGEST)):
             factor = value.factor.tolist()
             keys["factor"] = float(value.factor[0]) if is_number or len(set(factor)) == 1 else factor
             channel = value.channel or ("luminance" if is_number else "")

@@ -6,6 +6,7 @@ from . import images
 from .axes import convert_back
 from .node_tree import NotExpressible, Wire, find_output, follow
 from .node_values import PINK, NodeValues
+from .textures import LARGEST
 from .values import Constant
 
 BLACK = {"color": [0.0, 0.0, 0.0]}
@@ -29,7 +30,7 @@ def find_rotation(source, node_values):
     if not isinstance(angles, Constant) or not isinstance(scale, Constant):
         raise NotExpressible("a mapping with textures")
     own = rotate_by_euler(angles.rgb) @ np.diag(scale.rgb) if source.node.vector_type != "TEXTURE" else \
-        np.diag(1 / scale.rgb) @ rotate_by_euler(angles.rgb).T
+        np.diag(np.divide(1, scale.rgb, out=np.zeros(3), where=scale.rgb != 0)) @ rotate_by_euler(angles.rgb).T
     return own @ before
 
 
@@ -52,12 +53,14 @@ def find_turn(matrix):
 
 def look_up(texels, directions, is_mirror_ball):
     """Bilinear values of a picture in Blender's directions (..., 3)."""
-    x, y, z = np.moveaxis(directions / np.linalg.norm(directions, axis=-1, keepdims=True), -1, 0)
+    norms = np.linalg.norm(directions, axis=-1, keepdims=True)
+    x, y, z = np.moveaxis(directions / np.maximum(norms, 1e-30), -1, 0)
     if is_mirror_ball:
         length = np.sqrt(np.maximum(2 * (1 - y), 1e-12))
         u, v = x / length / 2 + 0.5, z / length / 2 + 0.5
     else:
         u, v = 0.5 - np.arctan2(y, x) / (2 * np.pi), np.arctan2(z, np.hypot(x, y)) / np.pi + 0.5
+        u, v = (np.where(norms[..., 0] == 0, 0.0, at) for at in (u, v))  # as in Cycles
     height, width = texels.shape[:2]
     column, row = u * width - 0.5, np.clip((1 - v) * height - 0.5, 0, height - 1)
     c0, r0 = np.floor(column).astype(int), np.floor(row).astype(int)
@@ -149,6 +152,8 @@ class WorldReader:
     def _picture(self, source, strength, factor):
         node = source.node
         matrix = find_rotation(follow(source.input("Vector")), self._values)
+        if not np.all(np.isfinite(matrix)):
+            raise NotExpressible("a mapping that is not finite")
         is_mirror_ball = node.projection == "MIRROR_BALL"
         turn = None if is_mirror_ball else find_turn(matrix)
         keys = {"color": [float(f) for f in factor], "strength": strength}
@@ -174,7 +179,17 @@ def export_world(depsgraph, report):
     world = depsgraph.scene.world
     world = world.evaluated_get(depsgraph) if world else None
     name = world.name if world else ""
-    environment = WorldReader(lambda text: report.add("world", name, text)).read(world)
+
+    def tell(text):
+        report.add("world", name, text)
+    environment = WorldReader(tell).read(world)
+    strength = environment.get("strength", 1.0)
+    if not np.all(np.abs([*environment["color"], strength]) < LARGEST):  # NaN is not
+        tell("its colour or strength is not finite: it is black")
+        return relief.Environment(**BLACK)
+    if strength < 0:
+        tell("its strength is negative: it is black")
+        return relief.Environment(**BLACK)
     if np.any(np.array(environment["color"]) < 0):
         environment["color"] = [max(c, 0.0) for c in environment["color"]]
     return environment
