@@ -54,6 +54,13 @@ def read_float_attribute(mesh, name, domain):
     return read(attribute.data, "value", 1)
 
 
+def read_loose_points(mesh):
+    """Points of edges without a face, which Blender keeps as sharp corners."""
+    is_loose = np.ones(len(mesh.edges), bool)
+    is_loose[read(mesh.loops, "edge_index", 1, np.int32)] = False
+    return np.unique(read(mesh.edges, "vertices", 2, np.int32)[is_loose])
+
+
 def read_creases(mesh):
     """(edges (K, 2), sharpness (K,)): Blender's crease c is a sharpness of 10 c^2; corners are edges of one point."""
     edges, sharpness = np.zeros((0, 2), np.int32), np.zeros(0, np.float32)

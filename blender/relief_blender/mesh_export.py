@@ -94,9 +94,10 @@ class MeshExport:
             return None
         subdivision.report_differences(modifier, report)
         keys = subdivision.make_keys(modifier, adaptive, self._is_render, len(arrays.sizes), material.displacement is not None)
-        creases = mesh_arrays.read_creases(cage) if modifier.use_creases else None
-        return self._add(evaluated, arrays, material, subdivision=keys,
-                         creases=creases if creases and len(creases[0]) else None)
+        creases = subdivision.read_creases(modifier, cage, arrays, report)
+        if creases is not None:
+            keys["creases"] = True
+        return self._add(evaluated, arrays, material, subdivision=keys, creases=creases)
 
     def _add_mesh(self, evaluated, mesh):
         used = self._used(evaluated, mesh)

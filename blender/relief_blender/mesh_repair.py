@@ -56,6 +56,20 @@ def _find_edges(points, sizes):
     return starts, following
 
 
+def select_creases(creases, arrays):
+    """(edges, sharpness) of those creases that are along an edge, or at a point, of a face."""
+    edges, sharpness = creases
+    count = np.int64(len(arrays.positions))
+    _, following = _find_edges(arrays.corners, arrays.sizes)
+
+    def number(pairs):
+        return np.min(pairs, -1).astype(np.int64) * count + np.max(pairs, -1)
+    known = np.stack([arrays.corners, arrays.corners[following]], -1)
+    points = np.stack([arrays.corners, arrays.corners], -1)
+    is_known = np.isin(number(edges), number(np.concatenate([known, points])))
+    return edges[is_known], sharpness[is_known]
+
+
 def _sum_crosses(points, sizes):
     """Twice the areas of faces, as vectors, as by Newell. points: (corners, 3)."""
     starts, following = _find_edges(points, sizes)

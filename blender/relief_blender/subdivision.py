@@ -1,6 +1,11 @@
 """A subdivision surface modifier as Relief's `subdivision`: its cage, and the keys."""
 from contextlib import contextmanager
 
+import numpy as np
+
+from . import mesh_arrays, mesh_repair
+
+SHARP = 10                # sharpness of what stays a corner for ever
 ADAPTIVE_FACES = 1 << 20  # about how many quads an adaptively subdivided surface without a map gets
 
 
@@ -53,6 +58,24 @@ def make_keys(modifier, adaptive, is_render, face_count, is_displaced):
             "uv": "linear" if modifier.uv_smooth == "NONE" else "smooth",
             "boundary": "edge-only" if modifier.boundary_smooth == "ALL" else "edge-and-corner",
             "creases": bool(modifier.use_creases)}
+
+
+def read_creases(modifier, cage, arrays, report):
+    """(edges, sharpness) of a cage, whose MeshArrays are `arrays`, or None: it has none."""
+    edges, sharpness = np.zeros((0, 2), np.int32), np.zeros(0, np.float32)
+    if modifier.use_creases:
+        edges, sharpness = mesh_arrays.read_creases(cage)
+    if len(edges) > 0:
+        count = len(edges)
+        edges, sharpness = mesh_repair.select_creases((edges, sharpness), arrays)
+        if len(edges) < count:
+            report("creases that are not along an edge of a face are left out")
+    loose = mesh_arrays.read_loose_points(cage)
+    corners = np.intersect1d(loose, arrays.corners) if len(loose) else loose
+    others = ~((edges[:, 0] == edges[:, 1]) & np.isin(edges[:, 0], corners))
+    edges = np.concatenate([edges[others], np.stack([corners, corners], -1).astype(np.int32)])
+    sharpness = np.concatenate([sharpness[others], np.full(len(corners), SHARP, np.float32)])
+    return (edges, sharpness) if len(edges) else None
 
 
 def report_differences(modifier, report):

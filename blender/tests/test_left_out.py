@@ -1,6 +1,6 @@
 """What a file may hold that is not an ordinary scene: it is rendered as by Cycles, or left out and named."""
 from support import (BlenderTest, add_light, main, make_grid, make_image, make_material,  # first: it makes the
-                     set_world)  # add-on known
+                     set_world, subdivide)  # add-on known
 import math
 from unittest import mock
 
@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 import relief
 from relief_blender import engine
+from test_geometry import make_cube, set_creases
 from relief_blender.report import Report
 from relief_blender.scene_export import SceneExport
 
@@ -109,6 +110,24 @@ class Materials(BlenderTest):
             self.render("RELIEF")
         exported = job.call_args.args[0]
         self.assertIn("keys", exported.materials[exported.objects[0]["material"]]["roughness"])
+
+
+class Creases(BlenderTest):
+    def test_creases_along_edges_without_a_face_are_left_out(self):
+        ob = make_cube()
+        loose = [len(ob.data.vertices) + k for k in range(2)]
+        ob.data.vertices.add(2)
+        ob.data.edges.add(1)
+        ob.data.edges[-1].vertices = (0, loose[0])
+        ob.data.update()
+        make_material(ob)
+        set_creases(ob.data, [((0, 1), 1.0), ((1, 3), 1.0), ((0, loose[0]), 1.0)], [(loose[1], 1.0), (7, 1.0)])
+        modifier = subdivide(ob, "CATMULL_CLARK", 4)
+        self.compare(samples=4)
+        self.assertEqual(self.report(), ['object "thing": creases that are not along an edge of a face are left out'])
+        modifier.use_creases = False  # the point of the loose edge stays sharp
+        self.compare("plain", samples=4)
+        self.assertEqual(self.report(), [])
 
 
 class Lights(BlenderTest):
