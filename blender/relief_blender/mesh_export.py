@@ -31,14 +31,13 @@ class MeshExport:
 
     def __init__(self, scene, materials, depsgraph, report):
         self._scene, self._materials, self._depsgraph, self._report = scene, materials, depsgraph, report
-        self._is_render = depsgraph.mode == "RENDER"
         self._done = {}
 
     def export(self, evaluated, is_made_by_nodes=False):
         """The MeshParts of an evaluated object. Geometry nodes make instances of meshes that are no object's own."""
         slots = tuple(slot.material.name_full if slot.material else "" for slot in evaluated.material_slots
                       if slot.link == "OBJECT")
-        modifier = None if is_made_by_nodes else subdivision.find_modifier(evaluated, self._is_render)
+        modifier = None if is_made_by_nodes else subdivision.find_modifier(evaluated, self._depsgraph)
         owner = evaluated.original.name_full if modifier else ""
         key = (evaluated.data.as_pointer(), slots, owner)
         if key not in self._done:
@@ -93,7 +92,8 @@ class MeshExport:
                    "it is subdivided by its Levels")
             return None
         subdivision.report_differences(modifier, report)
-        keys = subdivision.make_keys(modifier, adaptive, self._is_render, len(arrays.sizes), material.displacement is not None)
+        keys = subdivision.make_keys(modifier, adaptive, subdivision.find_level(modifier, self._depsgraph), len(arrays.sizes),
+                                     material.displacement is not None)
         creases = subdivision.read_creases(modifier, cage, arrays, report)
         if creases is not None:
             keys["creases"] = True

@@ -14,13 +14,13 @@ from .shutter import can_deform
 from .subdivision import find_modifier
 
 
-def may_deform(evaluated):
+def may_deform(evaluated, depsgraph):
     """Whether anything could move points of an evaluated object against each other; a subdivision surface alone does not."""
     original = evaluated.original
     data = original.data
     if original.type != "MESH" or data.animation_data or data.shape_keys:
         return True
-    own = 1 if find_modifier(evaluated, is_render=True) else 0
+    own = 1 if find_modifier(evaluated, depsgraph) else 0
     return len(original.modifiers) > own or original.parent_type in {"ARMATURE", "LATTICE"}
 
 
@@ -63,7 +63,7 @@ class MeshMotion:
 
     def begin(self, step, depsgraph):
         """Meshes are looked at in steps that are whole frames of Relief."""
-        self._seen = set()
+        self._seen, self._depsgraph = set(), depsgraph
         scratch = relief.Scene()
         scratch.displacements = self._exporter.scene.displacements
         self._scratch = scratch if step % self._shutter.stride == 0 else None
@@ -72,7 +72,9 @@ class MeshMotion:
     def look_at(self, instance, entries):
         """An instance at this step, and its objects in the scene."""
         evaluated, names = instance.object, tuple(entry["mesh"] for entry in entries)
-        if self._scratch is None or names in self._seen or not can_deform(evaluated.original) or not may_deform(evaluated):
+        if self._scratch is None or names in self._seen or not can_deform(evaluated.original):
+            return
+        if not may_deform(evaluated, self._depsgraph):
             return
         self._seen.add(names)
         parts = self._export.export(evaluated, is_made_by_nodes(instance))

@@ -9,17 +9,28 @@ SHARP = 10                # sharpness of what stays a corner for ever
 ADAPTIVE_FACES = 1 << 20  # about how many quads an adaptively subdivided surface without a map gets
 
 
-def find_modifier(evaluated, is_render):
+def find_modifier(evaluated, depsgraph):
     """The last enabled modifier if it is a Catmull-Clark or adaptive subdivision surface, else None."""
+    is_render = depsgraph.mode == "RENDER"
     if evaluated.type != "MESH":
         return None
     shown = [m for m in evaluated.modifiers if (m.show_render if is_render else m.show_viewport)]
     if not shown or shown[-1].type != "SUBSURF":
         return None
     modifier = shown[-1]
-    if modifier.subdivision_type == "CATMULL_CLARK" or is_adaptive(evaluated, modifier):
+    if is_adaptive(evaluated, modifier):
         return modifier
-    return None
+    is_smooth = modifier.subdivision_type == "CATMULL_CLARK" and find_level(modifier, depsgraph) > 0
+    return modifier if is_smooth else None
+
+
+def find_level(modifier, depsgraph):
+    """The level that Blender subdivides to, at most that of Simplify; 0 is the mesh itself."""
+    is_render, render = depsgraph.mode == "RENDER", depsgraph.scene.render
+    level = modifier.render_levels if is_render else modifier.levels
+    if not render.use_simplify:
+        return level
+    return min(level, render.simplify_subdivision_render if is_render else render.simplify_subdivision)
 
 
 def is_adaptive(evaluated, modifier):
@@ -45,15 +56,14 @@ def cage_of(evaluated, modifier, depsgraph):
 def choose_level(levels, adaptive, face_count, is_displaced):
     """`level` of Relief. A displaced surface gets its detail from the picture; its patches need few levels."""
     most = 3 if is_displaced else 6
-    level = most if adaptive else min(max(levels, 1), most if is_displaced else 8)
+    level = most if adaptive else min(levels, most if is_displaced else 8)
     while level > 1 and adaptive and face_count * 4 ** level > ADAPTIVE_FACES:
         level -= 1
     return level
 
 
-def make_keys(modifier, adaptive, is_render, face_count, is_displaced):
-    """The key `subdivision` of a mesh."""
-    levels = modifier.render_levels if is_render else modifier.levels
+def make_keys(modifier, adaptive, levels, face_count, is_displaced):
+    """The key `subdivision` of a mesh. levels: see find_level()."""
     return {"scheme": "catmark", "level": choose_level(levels, adaptive, face_count, is_displaced),
             "uv": "linear" if modifier.uv_smooth == "NONE" else "smooth",
             "boundary": "edge-only" if modifier.boundary_smooth == "ALL" else "edge-and-corner",

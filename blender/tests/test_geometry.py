@@ -55,6 +55,28 @@ class Geometry(BlenderTest):
             self.compare(smooth.lower())
             bpy.data.objects.remove(ob)
 
+    def test_simplify_limits_the_levels_of_subdivisions(self):
+        ob, render = make_cube(), bpy.context.scene.render
+        make_material(ob)
+        subdivide(ob, "CATMULL_CLARK", 5)
+        for level in (0, 1, 5):
+            render.use_simplify, render.simplify_subdivision_render = True, level
+            ours, _ = self.compare(f"level{level}")
+            if level == 0:
+                cube = ours
+        self.assertGreater(np.mean(ours.mask != cube.mask), 0.03)
+        ob.modifiers[0].render_levels = 0
+        self.compare("none")
+
+    @unittest.skipIf(bpy.app.version < (4, 3), "adaptive surfaces of Cycles 4.2 differ from its own uniform ones")
+    def test_simplify_of_adaptive_subdivisions(self):
+        ob, render = make_cube(), bpy.context.scene.render
+        make_material(ob)
+        subdivide(ob, "CATMULL_CLARK", 3, adaptive=True)
+        for level in (0, 1):
+            render.use_simplify, render.simplify_subdivision_render = True, level
+            self.compare(f"level{level}")
+
     def test_modifiers_below_the_subdivision_are_applied(self):
         ob = make_cube()
         make_material(ob)
