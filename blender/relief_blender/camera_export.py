@@ -99,19 +99,29 @@ def find_border(render, width, height):
     return x0, height - y1, x1, height - y0
 
 
-def export_camera(depsgraph, report, original=None):
-    """The View of a final render. `report` is a Report; `original`: a camera in place of the scene's."""
+def shift_projection(projection, camera, shift_x, aspect):
+    """Moves the picture of a projection matrix from the camera's own shift to another. aspect: width over height."""
+    fit = {"AUTO": max(aspect, 1.0), "HORIZONTAL": aspect, "VERTICAL": 1.0}[camera.sensor_fit]
+    across = 2 * (shift_x - camera.shift_x) * fit / aspect
+    if projection[3][3] == 1:
+        projection[0][3] -= across
+    else:
+        projection[0][2] += across
+
+
+def export_camera(depsgraph, report, original, find_eye=None):
+    """The View of a final render. `report` is a Report; `original`: a camera or None. find_eye: gives the matrix and the
+    horizontal shift of the evaluated camera, where it stands for one of several views."""
     scene, render = depsgraph.scene, depsgraph.scene.render
     factor = render.resolution_percentage / 100
     width, height = max(int(render.resolution_x * factor), 1), max(int(render.resolution_y * factor), 1)
-    original = original or scene.camera
     if original is None:
         raise relief.Error("the scene has no camera", hint="Add > Camera, then Scene Properties > Camera")
     if original.type != "CAMERA":
         raise relief.Error(f'object "{original.name_full}" is used as a camera but is none',
                            hint="choose a camera in Scene Properties > Camera")
     camera = original.evaluated_get(depsgraph)
-    matrix = np.array(camera.matrix_world)
+    matrix, shift_x = find_eye(camera) if find_eye else (np.array(camera.matrix_world), camera.data.shift_x)
     if not np.all(np.isfinite(matrix)) or np.min(axes.find_axis_scale(matrix)) == 0:
         raise relief.Error(f'camera "{camera.name}" has no direction by its scale, or its transform is not finite')
 
@@ -119,9 +129,11 @@ def export_camera(depsgraph, report, original=None):
         report.add("camera", camera.name, text)
     if camera.data.type == "PANO":
         tell("a panoramic view is the perspective of its lens")
-    projection = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x,
-                                           scale_y=render.pixel_aspect_y)
-    basis = find_basis(camera.matrix_world)
+    projection = np.array(camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x,
+                                                    scale_y=render.pixel_aspect_y))
+    aspect = width * render.pixel_aspect_x / (height * render.pixel_aspect_y)
+    shift_projection(projection, camera.data, shift_x, aspect)
+    basis = find_basis(matrix)
     view = make_view((width, height, find_border(render, width, height)), projection, basis, tell)
     add_depth_of_field(view, camera.data, basis, tell)
     return view

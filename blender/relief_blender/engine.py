@@ -5,12 +5,12 @@ import weakref
 import bpy
 
 from . import faults, passes, statistics
-from .camera_export import export_camera
 from .motion_export import MotionExport
 from .properties import find_threads
 from .render_job import RenderJob, has_left
 from .report import Report
 from .scene_export import SceneExport
+from .stereo import find_cameras, find_views
 from .viewport import Viewport
 
 PATIENCE = 1.0  # seconds that a stopped render may take to end
@@ -43,12 +43,11 @@ class ReliefEngine(bpy.types.RenderEngine):
         self._report, self._fault = Report(), ""
         self.update_stats("", "Relief: taking over the scene")
         try:
-            self._view = export_camera(depsgraph, self._report)
+            self._views = find_views(self, depsgraph, self._report, find_cameras(self, depsgraph.scene))
             exporter = SceneExport(depsgraph, self._report)
             self._scene = exporter.run()
-            self._scene.camera = self._view.camera
-            self._motion = MotionExport(depsgraph, exporter, self._view, self._report)
-            self._motion.run(self.frame_set)
+            self._motion = MotionExport(depsgraph, exporter, self._views, self._report)
+            self._motion.run(self)
         except Exception as fault:  # whatever Blender is not told is a picture without the scene
             self._fault = faults.describe(fault)
 
@@ -69,16 +68,25 @@ class ReliefEngine(bpy.types.RenderEngine):
         scene = depsgraph.scene
         layers = passes.find_layers(depsgraph.view_layer)
         passes.report_missing(depsgraph.view_layer, self._report)
-        job = RenderJob(self._scene, {**make_settings(scene, self._view, layers), **self._motion.settings},
-                        on_end=self._motion.make_clean_up())
-        self._scene = None
-        try:
-            return self._follow(job, depsgraph)
-        finally:
-            job.leave()
+        taken, self._scene = self._scene, None
+        for number, (name, view) in enumerate(self._views.items()):
+            taken.camera = self._motion.cameras[name]
+            is_last = number == len(self._views) - 1
+            job = RenderJob(taken, {**make_settings(scene, view, layers), **self._motion.settings},
+                            on_end=self._motion.make_clean_up() if is_last else None)
+            if is_last:
+                taken = None
+            try:
+                fault = self._follow(job, depsgraph, name)
+            finally:
+                job.leave()
+            if fault or self._is_stopped():
+                return fault
+        return ""
 
-    def _follow(self, job, depsgraph):
-        """What went wrong, or "". A render that is stopped has the picture so far, or none before the first sample."""
+    def _follow(self, job, depsgraph, name):
+        """What went wrong in a view, or "". A render that is stopped has the picture so far, or none before the first
+        sample."""
         stopped_at = None
         while True:
             kind, thing = job.poll(0.1)
@@ -86,12 +94,13 @@ class ReliefEngine(bpy.types.RenderEngine):
                 job.cancel()
                 stopped_at = time.monotonic()
             if kind == "progress":
-                self.update_progress(thing.fraction)
+                before = list(self._views).index(name)
+                self.update_progress((before + thing.fraction) / len(self._views))
                 self.update_stats("", f"Sample {thing.samples_done}/{thing.samples_total}")
             elif kind == "picture":
-                self._show(thing, depsgraph, is_last=False)
+                self._show(thing, depsgraph, name, is_last=False)
             elif kind == "done":
-                self._finish(thing, depsgraph)
+                self._finish(thing, depsgraph, name)
                 return ""
             elif kind == "fault":
                 return "" if job.is_cancelled else faults.describe(thing)
@@ -101,25 +110,26 @@ class ReliefEngine(bpy.types.RenderEngine):
     def _is_stopped(self):
         return self.test_break()
 
-    def _show(self, picture, depsgraph, is_last):
-        """Writes a picture into the result."""
-        x0, y0, x1, y1 = self._view.crop
-        result = self.begin_result(0, 0, x1 - x0, y1 - y0, layer=depsgraph.view_layer.name)
+    def _show(self, picture, depsgraph, name, is_last):
+        """Writes a picture of a view into the result."""
+        x0, y0, x1, y1 = self._views[name].crop
+        result = self.begin_result(0, 0, x1 - x0, y1 - y0, layer=depsgraph.view_layer.name, view=name)
         made = result.layers[0].passes
         passes.put(made["Combined"], passes.make_combined(picture.color, depsgraph.scene.render.film_transparent))
         for p in passes.wanted_passes(depsgraph.view_layer):
-            passes.put(made[p.name], passes.make_pass(p, picture[p.layer], self._view))
+            passes.put(made[p.name], passes.make_pass(p, picture[p.layer], self._views[name]))
         for name in passes.wanted_mattes(depsgraph.view_layer) if is_last else []:
             for rank in range(passes.MATTE_RANKS):
                 passes.put(made[f"{name}{rank:02}"], picture[f"{name}{rank:02}"])
         self.end_result(result)
 
-    def _finish(self, picture, depsgraph):
-        self._show(picture, depsgraph, is_last=True)
+    def _finish(self, picture, depsgraph, name):
+        self._show(picture, depsgraph, name, is_last=True)
         for warning in picture.warnings:
             self._report.add("scene", "", warning)
         statistics.keep(depsgraph.scene, picture.statistics, self._report.lines)
-        self._report.tell(lambda line: self.report({"WARNING"}, line))
+        if name == list(self._views)[-1] or self._is_stopped():
+            self._report.tell(lambda line: self.report({"WARNING"}, line))
 
     def _fail(self, text, scene):
         """Shows an error; the statistics keep it, as the panel is what one looks at next."""

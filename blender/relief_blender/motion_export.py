@@ -6,16 +6,16 @@ import numpy as np
 import relief
 
 from . import axes, motion_keys
-from .camera_export import export_camera
 from .lights_export import is_finite, make_light
 from .material_export import MaterialExport
 from .motion_meshes import MeshMotion
 from .report import Report
 from .scene_export import MESH_TYPES, identify
 from .shutter import Shutter, find_steps, find_times, report_differences
+from .stereo import find_cameras, find_views
 from .world_export import export_world
 
-SECTIONS = ("camera", "environment", "materials", "displacements", "objects", "lights")
+SECTIONS = ("environment", "materials", "displacements", "objects", "lights")
 STILL = "motion blur: its transform shears, is mirrored meanwhile or has no volume: it stays still"
 COMES = "motion blur: it comes or goes while the shutter is open: it is there or not as at the frame"
 NOT_FINITE = "motion blur: its power, colour, size or transform is not finite meanwhile: it stays as at the frame"
@@ -46,13 +46,15 @@ def find_owners(instance):
 
 
 class MotionExport:
-    """Moves the frame of a depsgraph through the shutter. `exporter`: a SceneExport that has run; `view`: its camera's View.
+    """Moves the frame of a depsgraph through the shutter. `exporter`: a SceneExport that has run; `views`: the View of its
+    camera by names of views.
 
-    After run(), `settings` are keywords of relief.render."""
+    After run(), `settings` are keywords of relief.render, and `cameras` are those of the scene by names of views."""
 
-    def __init__(self, depsgraph, exporter, view, report):
+    def __init__(self, depsgraph, exporter, views, report):
         self.settings, self._folder = {}, None
-        self._depsgraph, self._exporter, self._view, self._report = depsgraph, exporter, view, report
+        self.cameras = {name: view.camera for name, view in views.items()}
+        self._depsgraph, self._exporter, self._at_frame, self._report = depsgraph, exporter, views, report
         self._camera = depsgraph.scene.camera
         self._matrices, self._lights = defaultdict(dict), defaultdict(dict)  # by instance and step
         self._views, self._worlds = {}, {}                                   # by step
@@ -60,8 +62,8 @@ class MotionExport:
         self._sources = {name: m for name, m in exporter.materials.sources.items() if is_animated(m)}
         self._has_moving_world = depsgraph.scene.world is not None and is_animated(depsgraph.scene.world)
 
-    def run(self, set_frame):
-        """set_frame(frame, subframe): that of the engine. Whatever happens, the frame is the old one in the end."""
+    def run(self, engine):
+        """engine: the bpy.types.RenderEngine. Whatever happens, the frame is the old one in the end."""
         scene = self._depsgraph.scene
         times = find_times(self._depsgraph.scene_eval)
         if times is None:
@@ -72,14 +74,16 @@ class MotionExport:
         self._camera_steps = find_steps(self._camera)
         self._shutter = Shutter(*times, max([2, self._camera_steps, *self._steps.values()]))
         self._meshes = MeshMotion(self._exporter, self._shutter, self._report)
+        cameras = find_cameras(engine, scene)
         frame, subframe = scene.frame_current, scene.frame_subframe
         try:
             for step in range(self._shutter.step_count + 1):
                 at = self._shutter.find_frame(step)
-                set_frame(math.floor(at), at - math.floor(at))
+                engine.frame_set(math.floor(at), at - math.floor(at))
+                self._views[step] = find_views(engine, self._depsgraph, Report(), cameras)
                 self._look(step)
         finally:
-            set_frame(frame, subframe)
+            engine.frame_set(frame, subframe)
         self._write()
 
     def make_clean_up(self):
@@ -90,7 +94,6 @@ class MotionExport:
     # At a step
 
     def _look(self, step):
-        self._views[step] = export_camera(self._depsgraph, Report(), self._camera)
         if self._has_moving_world:
             self._worlds[step] = export_world(self._depsgraph, Report())
         self._look_at_materials(step)
@@ -144,11 +147,12 @@ class MotionExport:
             self._write_lights(key, made.lights)
         self._write_materials()
         self._write_world(scene)
-        self._write_camera(scene)
+        self.cameras = {name: self._make_camera(name) for name in self._at_frame}
         self._folder = self._meshes.write()
-        if self._folder is not None or has_keys([getattr(scene, section) for section in SECTIONS]):
+        if self._folder is not None or has_keys([self.cameras, *(getattr(scene, section) for section in SECTIONS)]):
             half = self._shutter.length / 2
-            scene.camera["shutter"] = [-half, half]
+            for camera in self.cameras.values():
+                camera["shutter"] = [-half, half]
             self.settings = {"frame": half}
 
     def _write_objects(self, key, entries):
@@ -219,18 +223,19 @@ class MotionExport:
                 sample["rotate_degrees"] = turn
         motion_keys.merge(scene.environment, [self._shutter.find_time(step) for step in self._worlds], samples, tell)
 
-    def _write_camera(self, scene):
-        """The scene's camera is one of its own: passes are made with that of the frame."""
-        scene.camera = relief.Camera(self._view.camera)
+    def _make_camera(self, name):
+        """The camera of a view, with keys; passes are made with that of the frame."""
+        result = relief.Camera(self._at_frame[name].camera)
         if not self._camera_steps:
-            return
+            return result
 
         def tell(what):
             self._report.add("camera", self._camera.name, f"motion blur: its {what} stays as at the frame")
-        times, views = self._choose(self._views, self._camera_steps)
+        times, views = self._choose({step: views[name] for step, views in self._views.items()}, self._camera_steps)
         still = {"from", "to", "up"}
-        motion_keys.merge(scene.camera, times, [{**v.camera, **{k: scene.camera[k] for k in still}} for v in views], tell)
+        motion_keys.merge(result, times, [{**v.camera, **{k: result[k] for k in still}} for v in views], tell)
         matrices = [view.matrix for view in views]
         offsets = [view.depth_offset for view in views]
         if any(not np.array_equal(matrices[0], m) or offsets[0] != o for m, o in zip(matrices, offsets)):
-            motion_keys.add_view(scene.camera, times, motion_keys.find_poses(matrices), offsets)
+            motion_keys.add_view(result, times, motion_keys.find_poses(matrices), offsets)
+        return result
