@@ -29,6 +29,8 @@ def find_file(image):
     if image.colorspace_settings.name not in LINEAR_SPACES:
         return None
     path = bpy.path.abspath(image.filepath, library=image.library)
+    if "##" in path or image.source == "FILE" and any(sign in path.lower() for sign in ("<udim>", "<uvtile>")):
+        return None  # Relief would put the number of a frame or of a tile in its place
     first = path.replace("<UDIM>", str(image.tiles[0].number)) if image.source == "TILED" else path
     return os.path.abspath(path) if is_plain_exr(first) else None
 

@@ -41,6 +41,20 @@ class Images(BlenderTest):
         tree.links.new(texture.outputs["Alpha"], emission.inputs["Color"])
         self.compare_colors([1, 1, 1])
 
+    def test_signs_of_numbers_in_names_of_files_are_taken_as_they_are(self):
+        texture, emission, _ = self.make_glow()
+        for name in ("map##.exr", "a####b/map.exr", "map<UDIM>.exr", "map<uvtile>.exr"):
+            file = self.folder / name
+            file.parent.mkdir(exist_ok=True)
+            image = make_image("made", np.full((4, 4, 3), (0.25, 0.5, 0.125)))
+            image.filepath_raw, image.file_format = str(file), "OPEN_EXR"
+            image.save()
+            texture.image = bpy.data.images.load(str(file))
+            texture.image.colorspace_settings.name, texture.image.source = "Non-Color", "FILE"
+            with self.subTest(name=name):
+                self.compare_colors([0.25, 0.5, 0.125])
+                self.assertEqual(self.report(), [])
+
     def test_a_missing_environment_is_pink_as_in_cycles_and_named(self):
         tree = bpy.context.scene.world.node_tree
         texture = tree.nodes.new("ShaderNodeTexEnvironment")
