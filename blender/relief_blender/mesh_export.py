@@ -61,7 +61,8 @@ class MeshExport:
 
     def _used(self, evaluated, mesh):
         """{slot: ExportedMaterial} of the slots that faces use; slots beyond the last are the last."""
-        materials = find_materials(evaluated, mesh)
+        override = self._depsgraph.view_layer.material_override
+        materials = [override.evaluated_get(self._depsgraph)] if override else find_materials(evaluated, mesh)
         indices = np.unique(np.minimum(mesh_arrays.read(mesh.polygons, "material_index", 1, np.int32), len(materials) - 1))
         return {int(i): self._materials.export(materials[i]) for i in indices}
 

@@ -13,7 +13,7 @@ from .report import Report
 from .scene_export import MESH_TYPES, identify
 from .shutter import Shutter, find_steps, find_times, report_differences
 from .stereo import find_cameras, find_views
-from .world_export import export_world
+from .world_export import export_world, find_world
 
 SECTIONS = ("environment", "materials", "displacements", "objects", "lights")
 STILL = "motion blur: its transform shears, is mirrored meanwhile or has no volume: it stays still"
@@ -60,7 +60,7 @@ class MotionExport:
         self._views, self._worlds = {}, {}                                   # by step
         self._materials, self._displacements = defaultdict(dict), defaultdict(dict)  # by name and step
         self._sources = {name: m for name, m in exporter.materials.sources.items() if is_animated(m)}
-        self._has_moving_world = depsgraph.scene.world is not None and is_animated(depsgraph.scene.world)
+        self._has_moving_world = is_animated(find_world(depsgraph))
 
     def run(self, engine):
         """engine: the bpy.types.RenderEngine. Whatever happens, the frame is the old one in the end."""

@@ -174,9 +174,14 @@ class WorldReader:
         return images.read_tiles(node.image, self._report)[1001][..., :3]
 
 
+def find_world(depsgraph):
+    """The original bpy.types.World that lights the view layer, or None."""
+    return depsgraph.view_layer.world_override or depsgraph.scene.world
+
+
 def export_world(depsgraph, report):
-    """The Environment at the depsgraph's time: `depsgraph.scene` is the original one, whose world stays behind."""
-    world = depsgraph.scene.world
+    """The Environment at the depsgraph's time: the original world stays behind."""
+    world = find_world(depsgraph)
     world = world.evaluated_get(depsgraph) if world else None
     name = world.name if world else ""
 

@@ -112,6 +112,45 @@ class Materials(BlenderTest):
         self.assertIn("keys", exported.materials[exported.objects[0]["material"]]["roughness"])
 
 
+class ViewLayers(BlenderTest):
+    def check_colors(self):
+        """Both renderers have the same mean colour."""
+        ours, theirs = (self.render(engine, samples=16)["Combined"][..., :3].mean((0, 1)) for engine in ("RELIEF", "CYCLES"))
+        np.testing.assert_allclose(ours, theirs, rtol=0.04)
+        self.assertEqual(self.report(), [])
+        return ours
+
+    def test_a_material_override(self):
+        ob = make_grid(2)
+        for color in ((1, 0, 0), (0, 0, 1)):
+            make_material(ob, Base_Color=color)
+        ob.data.polygons[1].material_index = 1
+        other = make_grid(2)
+        other.location.z, other.scale = 0.5, (0.3, 0.3, 0.3)
+        bpy.context.view_layer.material_override = make_material(Base_Color=(0, 0.8, 0), Specular_IOR_Level=0.0)
+        color = self.check_colors()
+        self.assertLess(max(color[0], color[2]), 0.02 * color[1])
+
+    def test_a_world_override(self):
+        scene, layer = bpy.context.scene, bpy.context.view_layer
+        make_material(make_grid(2))
+        scene.render.film_transparent = False
+        layer.world_override = bpy.data.worlds.new("other")
+        background = set_world(layer.world_override, (1, 0.2, 0.1))
+        color = self.check_colors()
+        self.assertGreater(color[0], 3 * color[1])
+        strength = background.inputs["Strength"]
+        for frame, value in ((0, 0.0), (2, 2.0)):
+            strength.default_value = value
+            strength.keyframe_insert("default_value", frame=frame)
+        scene.frame_set(1)
+        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+        with mock.patch.object(engine, "RenderJob", side_effect=relief.Error("enough")) as job, \
+                self.assertRaises(RuntimeError):
+            self.render("RELIEF")
+        self.assertIn("keys", job.call_args.args[0].environment["strength"])
+
+
 class Creases(BlenderTest):
     def test_creases_along_edges_without_a_face_are_left_out(self):
         ob = make_cube()
