@@ -1,5 +1,6 @@
 """Blender's camera as Relief's, with the window of the picture that is rendered."""
 import math
+from collections import defaultdict
 from typing import NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ import relief
 
 from . import axes
 
+USUAL_CLIP_START = 0.1001  # about that of new cameras: what lies before it is not named, as much of a ground does
 FAR = 1000  # how many times its height an orthographic view is looked at from
 
 
@@ -86,6 +88,29 @@ def add_depth_of_field(view, camera, basis, report):
     view.camera["focus_distance"] = max(find_focus(camera, basis[0], basis[3]), 1e-4)
     if camera.dof.aperture_blades or camera.dof.aperture_ratio != 1:
         report("the aperture is round")
+
+
+def report_clipping(scene, view, camera, report):
+    """Names the ends of an evaluated camera's range that cut boxes around objects of the relief.Scene in Cycles."""
+    places = defaultdict(list)
+    for entry in scene.objects:
+        places[entry["mesh"]].append(entry["transform"]["matrix"])
+    nearest, farthest = np.inf, -np.inf
+    for name, matrices in places.items():
+        points = scene.meshes[name].positions
+        ends = np.stack([points.min(0), points.max(0)])
+        box = np.array([[x, y, z, 1] for x in ends[:, 0] for y in ends[:, 1] for z in ends[:, 2]], float)
+        corners = box @ np.array(matrices).reshape(-1, 4, 4)[:, :3].transpose(0, 2, 1)
+        depths = (corners - view.matrix[:3, 3]) @ view.forward
+        ahead = depths[depths.max(-1) > 0]
+        # An orthographic view sees what is behind the camera, too.
+        nearest = min(nearest, ahead.min(initial=np.inf) if view.depth_offset == 0 else depths.max(-1).min())
+        farthest = max(farthest, depths.max())
+    least = USUAL_CLIP_START if view.depth_offset == 0 else 0.0
+    if nearest < camera.data.clip_start and camera.data.clip_start > least:
+        report.add("camera", camera.name, "its clip start is left out: what is nearer is seen")
+    if farthest > camera.data.clip_end:
+        report.add("camera", camera.name, "its clip end is left out: what is farther away is seen")
 
 
 def find_border(render, width, height):

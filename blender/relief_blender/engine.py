@@ -5,6 +5,7 @@ import weakref
 import bpy
 
 from . import faults, passes, statistics
+from .camera_export import report_clipping
 from .motion_export import MotionExport
 from .properties import find_threads
 from .render_job import RenderJob, has_left
@@ -43,9 +44,12 @@ class ReliefEngine(bpy.types.RenderEngine):
         self._report, self._fault = Report(), ""
         self.update_stats("", "Relief: taking over the scene")
         try:
-            self._views = find_views(self, depsgraph, self._report, find_cameras(self, depsgraph.scene))
+            cameras = find_cameras(self, depsgraph.scene)
+            self._views = find_views(self, depsgraph, self._report, cameras)
             exporter = SceneExport(depsgraph, self._report)
             self._scene = exporter.run()
+            for name, view in self._views.items():
+                report_clipping(self._scene, view, cameras[name].evaluated_get(depsgraph), self._report)
             self._motion = MotionExport(depsgraph, exporter, self._views, self._report)
             self._motion.run(self)
         except Exception as fault:  # whatever Blender is not told is a picture without the scene

@@ -82,10 +82,16 @@ class SceneExport:
         self._light_objects.append(instance.object.original)
         self.instances[identify(instance)] = Instance([], [light])
 
-    def _is_shown(self, evaluated):
+    def _is_shown(self, instance):
         """Whether the camera sees an object; what it would be to other rays is named where it differs."""
+        evaluated, layer = instance.object, self._depsgraph.view_layer
         name = evaluated.original.name_full
-        if evaluated.is_holdout:
+        owner = instance.parent.original if instance.is_instance else evaluated.original
+        is_holdout = owner.holdout_get(view_layer=layer)
+        if owner.indirect_only_get(view_layer=layer) and not is_holdout:
+            self._report.add("object", name, "its collection is Indirect Only: it is left out, its shadows and reflections too")
+            return False
+        if evaluated.is_holdout or is_holdout:
             self._report.add("object", name, "holdout is left out: it is seen")
         if not evaluated.visible_camera:
             self._report.add("object", name, "the camera does not see it: it is left out, its shadows and reflections too")
@@ -103,7 +109,7 @@ class SceneExport:
 
     def _add_object(self, instance):
         evaluated = instance.object
-        if not self._is_shown(evaluated):
+        if not self._is_shown(instance):
             return
         matrix = axes.convert_matrix(instance.matrix_world)
         if not np.all(np.abs(matrix) < FARTHEST):  # NaN is not

@@ -150,6 +150,40 @@ class ViewLayers(BlenderTest):
             self.render("RELIEF")
         self.assertIn("keys", job.call_args.args[0].environment["strength"])
 
+    def test_collections_that_are_held_out_or_indirect_are_named(self):
+        scene, layer = bpy.context.scene, bpy.context.view_layer
+        collection = bpy.data.collections.new("own")
+        scene.collection.children.link(collection)
+        ob, empty = make_grid(2), bpy.data.objects.new("empty", None)
+        scene.collection.objects.unlink(ob)
+        collection.objects.link(empty)
+        source = bpy.data.collections.new("source")
+        source.objects.link(ob)
+        empty.instance_type, empty.instance_collection = "COLLECTION", source
+        for text, is_seen, attribute in (("holdout is left out: it is seen", True, "holdout"),
+                                         ("its collection is Indirect Only: it is left out, its shadows and reflections too",
+                                          False, "indirect_only")):
+            own = layer.layer_collection.children["own"]
+            setattr(own, attribute, True)
+            ours = self.render("RELIEF", samples=1)
+            self.assertIn(f'object "thing": {text}', self.report())
+            self.assertEqual(ours.mask.any(), is_seen)
+            setattr(own, attribute, False)
+
+    def test_the_range_of_the_camera_is_named_where_it_cuts(self):
+        make_grid(2).scale = (0.5, 0.5, 0.5)
+        data = self.camera.data
+        start, end = (f'camera "camera": its clip {name} is left out: what is {place} is seen'
+                      for name, place in (("start", "nearer"), ("end", "farther away")))
+        for kind in ("PERSP", "ORTHO"):
+            data.type = kind
+            for clip_start, clip_end, lines in ((0.1, 1000, []), (6.5, 1000, [start] if kind == "PERSP" else []),
+                                                (0.1, 6.6, [end]), (8, 1000, [start])):
+                data.clip_start, data.clip_end = clip_start, clip_end
+                self.render("RELIEF", samples=1)
+                named = [line for line in self.report() if "clip" in line]
+                self.assertEqual(named, lines, (kind, clip_start, clip_end))
+
 
 class Creases(BlenderTest):
     def test_creases_along_edges_without_a_face_are_left_out(self):
