@@ -27,6 +27,12 @@ def make_settings(scene, view, layers):
             "background": "transparent" if scene.render.film_transparent else None}
 
 
+def begin_layer(layers, name):
+    """{name of a view layer: (lines, fault)} of the layers of one render so far. Blender may use an engine for several frames:
+    a layer that comes again begins another render."""
+    return {**({} if name in layers else layers), name: ([], "")}
+
+
 class ReliefEngine(bpy.types.RenderEngine):
     bl_idname = "RELIEF"
     bl_label = "Relief"
@@ -42,6 +48,7 @@ class ReliefEngine(bpy.types.RenderEngine):
     def update(self, data, depsgraph):
         """Takes the scene over, in the main thread. A fault is shown by render()."""
         self._report, self._fault = Report(), ""
+        self._layers = begin_layer(getattr(self, "_layers", {}), depsgraph.view_layer.name)
         self.update_stats("", "Relief: taking over the scene")
         try:
             cameras = find_cameras(self, depsgraph.scene)
@@ -61,7 +68,7 @@ class ReliefEngine(bpy.types.RenderEngine):
         except Exception as raised:
             fault = faults.describe(raised)
         if fault:
-            self._fail(fault, depsgraph.scene)
+            self._fail(fault, depsgraph)
 
     def _render(self, depsgraph):
         """What went wrong, or ""."""
@@ -131,15 +138,22 @@ class ReliefEngine(bpy.types.RenderEngine):
         self._show(picture, depsgraph, name, is_last=True)
         for warning in picture.warnings:
             self._report.add("scene", "", warning)
-        statistics.keep(depsgraph.scene, picture.statistics, self._report.lines)
+        self._keep(depsgraph, picture.statistics)
         if name == list(self._views)[-1] or self._is_stopped():
             self._report.tell(lambda line: self.report({"WARNING"}, line))
 
-    def _fail(self, text, scene):
+    def _keep(self, depsgraph, numbers, fault=""):
+        """Keeps the numbers of this view layer, with the lines and the first fault of all layers of the render."""
+        self._layers[depsgraph.view_layer.name] = self._report.lines, fault
+        lines = dict.fromkeys(line for lines, _ in self._layers.values() for line in lines)
+        faults_of_layers = [fault for _, fault in self._layers.values() if fault]
+        statistics.keep(depsgraph.scene, numbers, list(lines), next(iter(faults_of_layers), ""))
+
+    def _fail(self, text, depsgraph):
         """Shows an error; the statistics keep it, as the panel is what one looks at next."""
         # Blender 4.5 ends with a segmentation fault where a render that failed has no result to write.
         self.end_result(self.begin_result(0, 0, self.resolution_x, self.resolution_y))
-        statistics.keep(scene, {}, self._report.lines, text)
+        self._keep(depsgraph, {}, text)
         self.error_set(text)           # in the image editor
         self.report({"ERROR"}, text)   # in a window; scripts get an exception, and no picture is written
         self._report.tell(lambda line: self.report({"WARNING"}, line))

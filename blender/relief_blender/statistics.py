@@ -7,8 +7,8 @@ _kept = {}  # by session_uid: names may be those of another scene later
 
 
 class Kept(NamedTuple):
-    statistics: dict  # keys of `relief render --stats`; empty after a fault
-    lines: list       # of the report
+    statistics: dict  # keys of `relief render --stats`, of the last view layer; empty after a fault
+    lines: list       # of the report, of all view layers
     fault: str        # "" where there is a picture
 
 
