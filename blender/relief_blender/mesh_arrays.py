@@ -67,12 +67,12 @@ def read_creases(mesh):
     crease = read_float_attribute(mesh, "crease_edge", "EDGE")
     if crease is not None:
         used = crease > 0
-        edges, sharpness = read(mesh.edges, "vertices", 2, np.int32)[used], 10 * crease[used] ** 2
+        edges, sharpness = read(mesh.edges, "vertices", 2, np.int32)[used], 10 * np.minimum(crease[used], 1) ** 2
     corner = read_float_attribute(mesh, "crease_vert", "POINT")
     if corner is not None:
         points = np.flatnonzero(corner > 0).astype(np.int32)
         edges = np.concatenate([edges, np.stack([points, points], -1)])
-        sharpness = np.concatenate([sharpness, 10 * corner[points] ** 2])
+        sharpness = np.concatenate([sharpness, 10 * np.minimum(corner[points], 1) ** 2])
     return edges, sharpness.astype(np.float32)
 
 

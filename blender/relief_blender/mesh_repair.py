@@ -17,6 +17,8 @@ def repair(arrays, report):
     mask = np.ones(len(arrays.corners), bool)
     if not np.all(is_good):
         arrays, mask = _leave_out_points(arrays, is_good, report)
+    if len(arrays.sizes) == 0:
+        return None
     if not has_area(arrays):
         report("its faces have no area: it is left out")
         return None

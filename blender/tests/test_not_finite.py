@@ -60,7 +60,7 @@ class Meshes(BlenderTest):
         line = 'object "{}": faces with points that are not finite or too far away are left out: {}'
         for value in (math.nan, math.inf, 1e25):
             ob = self.add([(value, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
-            self.check(line.format("bad", 1), NO_AREA)
+            self.check(line.format("bad", 1))
             bpy.data.objects.remove(ob)
         ob = make_grid(4)
         ob.name, ob.location.z = "holed", -0.001
@@ -69,6 +69,26 @@ class Meshes(BlenderTest):
             prepare()
             ours = self.check(line.format("holed", 1))
             self.assertTrue(np.all(np.isfinite(ours["Combined"])))
+
+    def test_displaced_parts_beside_a_point_that_is_not_finite(self):
+        ob = make_grid(4)
+        ob.name, ob.location.z = "holed", -0.001
+        ob.data.vertices[6].co.x = math.nan
+        for _ in range(2):
+            displace(make_material(ob), make_image("map", np.zeros((4, 4, 3), np.float32)))
+        ob.data.polygons[1].material_index = 1
+        ours = self.render("RELIEF", samples=2)
+        self.assertTrue(np.all(np.isfinite(ours["Combined"])))
+        self.assertLess(np.mean(ours.mask != self.plain.mask), 0.001)
+
+    def test_a_crease_that_is_not_finite_is_the_sharpest(self):
+        ob = make_grid(2)
+        ob.name, ob.location.z = "creased", -0.001
+        for point, value in ((0, math.inf), (4, math.nan)):
+            attribute = ob.data.attributes.get("crease_vert") or ob.data.attributes.new("crease_vert", "FLOAT", "POINT")
+            attribute.data[point].value = value
+        subdivide(ob, "CATMULL_CLARK", 2)
+        self.check()
 
     def test_uvs_that_are_not_finite(self):
         image = make_image("map", np.zeros((4, 4, 3), np.float32))
