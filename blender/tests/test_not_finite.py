@@ -5,7 +5,7 @@ import math
 
 import bpy
 import numpy as np
-from relief_blender import mesh_repair
+from relief_blender import mesh_arrays, mesh_repair
 from relief_blender.mesh_arrays import MeshArrays
 
 NO_AREA = 'object "bad": its faces have no area: it is left out'
@@ -98,6 +98,18 @@ class Meshes(BlenderTest):
             displace(make_material(ob), image)
             self.check('object "bad": uvs that are not finite or beyond 1e+06 are 0')
             bpy.data.objects.remove(ob)
+
+    def test_further_uvs_that_are_not_finite(self):
+        ob = make_grid(1)
+        ob.data.uv_layers.new(name="other").uv[1].vector = (math.nan, 0)
+        ob.data.vertices[0].co.x = math.nan
+        arrays = mesh_arrays.read_mesh(ob.data, "UVMap", ("other",))
+        self.assertIsNone(mesh_repair.repair(arrays, print))
+        ob.data.vertices[0].co.x = -1
+        lines = []
+        arrays, _ = mesh_repair.repair(mesh_arrays.read_mesh(ob.data, "UVMap", ("other",)), lines.append)
+        self.assertEqual(lines, ["uvs that are not finite or beyond 1e+06 are 0"])
+        self.assertTrue(np.all(np.isfinite(arrays.further_uvs[0])))
 
     def test_transforms_that_are_not_finite(self):
         ob = self.add([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
