@@ -1,10 +1,12 @@
 """Layers of Relief as passes of Blender: names, channels, axes."""
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 
 from .axes import convert_back
 
+HAS_LONG_NAMES = bpy.app.version >= (5, 0)  # of passes, which Cycles has there as well
 NO_DEPTH = 1e10  # what Blender has where nothing is hit
 
 
@@ -23,9 +25,9 @@ PASSES = [
     Pass("Position", "use_pass_position", 3, "XYZ", "VECTOR", "P"),
     Pass("Normal", "use_pass_normal", 3, "XYZ", "VECTOR", "N"),
     Pass("UV", "use_pass_uv", 3, "UVA", "VECTOR", "uv"),
-    Pass("DiffCol", "use_pass_diffuse_color", 3, "RGB", "COLOR", "albedo"),
-    Pass("Emit", "use_pass_emit", 3, "RGB", "COLOR", "emission"),
-    Pass("Env", "use_pass_environment", 3, "RGB", "COLOR", "background"),
+    Pass("Diffuse Color" if HAS_LONG_NAMES else "DiffCol", "use_pass_diffuse_color", 3, "RGB", "COLOR", "albedo"),
+    Pass("Emission" if HAS_LONG_NAMES else "Emit", "use_pass_emit", 3, "RGB", "COLOR", "emission"),
+    Pass("Environment" if HAS_LONG_NAMES else "Env", "use_pass_environment", 3, "RGB", "COLOR", "background"),
 ]
 MATTES = [("use_pass_cryptomatte_object", "CryptoObject"), ("use_pass_cryptomatte_material", "CryptoMaterial")]
 MATTE_RANKS = 3  # pictures of two ranks each

@@ -33,6 +33,11 @@ class Layers:
         raise KeyError(f"{name}: {sorted(self._channels)}")
 
     @property
+    def names(self):
+        """Of all passes."""
+        return {channel.rsplit(".", 1)[0] for channel in self._channels}
+
+    @property
     def mask(self):
         return self["Combined"][..., 3] > 0.5
 

@@ -200,6 +200,12 @@ class Geometry(BlenderTest):
         bpy.ops.mesh.primitive_torus_add(location=(0, 1, 0.5))
         self.compare()
 
+    def test_passes_have_the_names_that_cycles_gives_them(self):
+        make_material(make_grid(2))
+        for name in ("z", "position", "normal", "uv", "diffuse_color", "emit", "environment"):
+            setattr(bpy.context.view_layer, f"use_pass_{name}", True)
+        self.assertEqual(self.render("RELIEF").names, self.render("CYCLES").names)
+
     def test_passes(self):
         make_material(make_cube())
         layer = bpy.context.view_layer
