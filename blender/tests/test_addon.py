@@ -34,6 +34,10 @@ class Addon(unittest.TestCase):
         self.assertLessEqual(modules, set(names))
         self.assertLess(len(manifest["permissions"]["files"]), 65)
 
+    def test_a_script_that_only_registers_it_ends(self):
+        script = f"import sys; sys.path.insert(0, {str(HERE.parent)!r}); import bpy, relief_blender; relief_blender.register()"
+        self.assertEqual(subprocess.run([sys.executable, "-c", script], capture_output=True, timeout=120).returncode, 0)
+
     def test_what_is_no_wheel_of_a_platform_is_refused(self):
         answer = self.pack("relief-0.7.2-py3-none-any.whl")
         self.assertNotEqual(answer.returncode, 0)

@@ -130,7 +130,8 @@ class Mesh:
         label = name if indices is None else f"{name[:-1]}_indices" if name.endswith("s") else f"indices of {name}"
         counted = array if indices is None else indices
         if len(counted) != len(self.corners):
-            raise ValueError(f"{label}: {len(counted)}, and there are {len(self.corners)} corners of faces")
+            hint = f"; of points they are {name}[faces.ravel()]" if len(counted) == len(self.positions) else ""
+            raise ValueError(f"{label}: {len(counted)}, and there are {len(self.corners)} corners of faces{hint}")
 
     def _collect(self) -> dict[str, Any]:
         """The arrays that there are, checked: they may have been changed."""

@@ -15,6 +15,9 @@ class Part(dict[str, Any]):
         super().__init__(*given)
         self.update({key[:-1] if key.endswith("_") else key: value for key, value in keys.items() if value is not None})
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"a {type(self).__name__} has keys: write part['{name}'] = ... in place of part.{name} = ...")
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({super().__repr__()})"
 

@@ -124,6 +124,15 @@ class SceneTest(unittest.TestCase):
         self.assertIn("materials.clay", caught.exception.message)
         self.assertEqual(str(pickle.loads(pickle.dumps(caught.exception))), str(caught.exception))
 
+    def test_keys_of_parts_are_no_attributes(self):
+        with self.assertRaisesRegex(AttributeError, r"part\['fov_degrees'\]"):
+            relief.Camera().fov_degrees = 5
+
+    def test_uvs_of_points_are_refused_with_the_way_to_those_of_corners(self):
+        points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+        with self.assertRaisesRegex(ValueError, r"uvs\[faces.ravel\(\)\]"):
+            relief.Mesh(points, [[0, 1, 2], [0, 2, 3]], uvs=np.zeros((4, 2)))
+
     def test_tiles_are_arrays_by_udim_numbers(self):
         plane = relief.Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], [[0, 1, 4, 3], [1, 2, 5, 4]],
                             uvs=[[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]], uv_indices=[[0, 1, 4, 3], [1, 2, 5, 4]])
