@@ -81,6 +81,10 @@ Displacement load_map(const std::filesystem::path& file, const MapOptions& optio
 /// The convention that load_map would derive from the options for a file of floats, without tiles.
 Displacement make_map_meaning(const MapOptions& options);
 
+/// The options of a map's convention, each of them set that counts for its space: no preset, no encoding, and
+/// frame and lengths in tangent space alone.
+MapOptions describe_map_meaning(const Displacement& map);
+
 /// Sample type of a written map file.
 enum class MapSamples { float16, float32, uint16 };
 

@@ -129,22 +129,16 @@ nb::object make_factors(const Vec3f& v) {
     return list;
 }
 
-const char* name_space(DisplacementSpace space) {
-    constexpr const char* kSpaces[] = {"tangent", "object", "world"};
-    return kSpaces[size_t(space)];
-}
-
 /// The keys of a scene file that say what the texels mean, whatever they were asked for by.
 nb::dict describe_meaning(const Displacement& map) {
-    constexpr const char *kTypes[] = {"vector", "height"}, *kFrames[] = {"mikk", "dpdu", "file"},
-                         *kLengths[] = {"absolute", "relative"};
+    const MapOptions options = describe_map_meaning(map);
     nb::dict keys;
-    keys["type"] = kTypes[size_t(map.type)], keys["space"] = name_space(map.space);
-    keys["axes"] = format_map_axes(map.axes, map.space);
-    if (map.space == DisplacementSpace::tangent)
-        keys["frame"] = kFrames[size_t(map.frame)], keys["lengths"] = kLengths[size_t(map.lengths)];
-    keys["midlevel"] = make_factors(map.midlevel), keys["scale"] = make_factors(map.scale);
-    keys["flip_v"] = map.flip_v;
+    for (const auto& [key, word] : {std::pair("type", &options.type), std::pair("space", &options.space),
+                                    std::pair("axes", &options.axes), std::pair("frame", &options.frame),
+                                    std::pair("lengths", &options.lengths)})
+        if (*word) keys[key] = **word;
+    keys["midlevel"] = make_factors(*options.midlevel), keys["scale"] = make_factors(*options.scale);
+    keys["flip_v"] = options.flip_v;
     return keys;
 }
 
@@ -153,7 +147,8 @@ nb::dict describe_meaning(const Displacement& map) {
 nb::object convert(const ParsedScene& parsed, const nb::dict& keys, const std::optional<nb::dict>& arrays) {
     const Displacement& from = get_map(parsed);
     MapOptions options = read_map_options(keys);
-    if (!options.space && !options.axes && options.preset.empty()) options.space = name_space(from.space);
+    if (!options.space && !options.axes && options.preset.empty())
+        options.space = describe_map_meaning(from).space;
     const Displacement to = make_map_meaning(options);
     std::optional<Mesh> mesh;
     if (arrays) mesh = make_mesh(*arrays);

@@ -297,4 +297,34 @@ TEST_F(Conventions, a_gamma_of_one_is_no_tag_of_colour) {
     EXPECT_EQ(get_tag("tEXt", "a comment"), "");
 }
 
+TEST(MapMeaning, is_described_by_options_that_make_it_again) {
+    std::vector<MapOptions> cases(5);
+    cases[0].preset = "mudbox";
+    cases[1].space = "object", cases[1].axes = "x,-z,y", cases[1].midlevel = {0.5f, 0.25f, 0};
+    cases[2].frame = "dpdu", cases[2].lengths = "relative", cases[2].scale = {1, 2, 3};
+    cases[3].type = "height", cases[3].flip_v = true;
+    cases[4].space = "world";
+    for (const MapOptions& options : cases) {
+        const Displacement map = make_map_meaning(options);
+        const MapOptions said = describe_map_meaning(map);
+        EXPECT_EQ(said.preset, "");
+        EXPECT_EQ(said.frame.has_value(), map.space == DisplacementSpace::tangent);
+        const Displacement again = make_map_meaning(said);
+        EXPECT_EQ(again.type, map.type);
+        EXPECT_EQ(again.space, map.space);
+        EXPECT_EQ(again.axes, map.axes);
+        EXPECT_EQ(again.frame, map.frame);
+        EXPECT_EQ(again.lengths, map.lengths);
+        EXPECT_EQ(again.midlevel, map.midlevel);
+        EXPECT_EQ(again.scale, map.scale);
+        EXPECT_EQ(again.flip_v, map.flip_v);
+    }
+}
+
+TEST(PictureNames, are_told_by_their_extensions) {
+    for (const char* name : {"a.exr", "b/c.PNG", "d.tx", "e.jpeg"})
+        EXPECT_TRUE(is_picture_name(name)) << name;
+    for (const char* name : {"a.obj", "exr", "scene.json", ""}) EXPECT_FALSE(is_picture_name(name)) << name;
+}
+
 } // namespace relief

@@ -4,6 +4,8 @@
 #include "io/scene/asset_cache.h"
 #include "io/scene/displacement_reader.h"
 #include "relief/io.h"
+#include "scene/displacement_conventions.h"
+#include "scene/words.h"
 
 namespace relief {
 
@@ -16,5 +18,15 @@ Displacement load_map(const std::filesystem::path& file, const MapOptions& optio
 }
 
 Displacement make_map_meaning(const MapOptions& options) { return make_displacement_values(options); }
+
+MapOptions describe_map_meaning(const Displacement& map) {
+    MapOptions options;
+    options.type = get_word(map.type), options.space = get_word(map.space);
+    options.axes = format_axes(map.axes, map.space);
+    if (map.space == DisplacementSpace::tangent)
+        options.frame = get_word(map.frame), options.lengths = get_word(map.lengths);
+    options.midlevel = map.midlevel, options.scale = map.scale, options.flip_v = map.flip_v;
+    return options;
+}
 
 } // namespace relief
