@@ -17,24 +17,24 @@ def refuse(value: Any, name: str, wanted: str, hint: str = "") -> NoReturn:
     raise Error(f"{shown[:LONGEST] + '...' if len(shown) > LONGEST else shown} is not {wanted}", where=name, hint=hint)
 
 
-def is_truth(value: Any) -> bool:
+def is_bool(value: Any) -> bool:
     return isinstance(value, (bool, np.bool_))
 
 
-def is_no(answer: Any) -> bool:
+def is_false(answer: Any) -> bool:
     """Whether a callback has said False; None and numbers are no answer."""
-    return is_truth(answer) and not answer
+    return is_bool(answer) and not answer
 
 
-def as_truth(value: Any, name: str) -> bool:
-    if not is_truth(value):
+def as_bool(value: Any, name: str) -> bool:
+    if not is_bool(value):
         refuse(value, name, "True or False")
     return bool(value)
 
 
-def as_whole(value: Any, name: str, low: int, high: int) -> int:
+def as_integer(value: Any, name: str, low: int, high: int) -> int:
     wanted = f"a whole number from {low} to {high}"
-    if is_truth(value):
+    if is_bool(value):
         refuse(value, name, wanted)
     try:
         number = operator.index(value)
@@ -47,7 +47,7 @@ def as_whole(value: Any, name: str, low: int, high: int) -> int:
 
 def as_number(value: Any, name: str, low: float, high: float, wanted: Optional[str] = None) -> float:
     wanted = wanted or f"a number from {low:.12g} to {high:.12g}"
-    if is_truth(value) or isinstance(value, (str, bytes)):
+    if is_bool(value) or isinstance(value, (str, bytes)):
         refuse(value, name, wanted)
     try:
         number = float(value)

@@ -93,8 +93,8 @@ class Picture:
                exposure: Union[float, str] = 0) -> bytes:
         """The bytes of a PNG file, which is also written to `path`, a name that ends in .png, if one is given."""
         if path is not None and not as_path(path, "path", "the name of a file").lower().endswith(".png"):
-            raise Error(f"'{os.fspath(path)}' is no name of a PNG file", where="path",
-                        hint="end it in .png; save() writes other kinds")
+            raise Error(f"'{os.fspath(path)}' does not end in .png", where="path",
+                        hint="save() writes other kinds of files")
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "picture.png") if path is None else os.fspath(path)
             self.save(file, tonemap, exposure)

@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import Any, Callable, Optional, Union
 
 from . import _relief
-from ._arguments import is_no, is_truth
+from ._arguments import is_false, is_bool
 
 Callback = Callable[[_relief.Progress], Any]
 
@@ -59,9 +59,9 @@ class NoProgress:
 
 
 def open_progress(progress: Union[bool, Callback, None]) -> Union[ProgressLine, NoProgress]:
-    if progress is None or is_truth(progress):
+    if progress is None or is_bool(progress):
         return ProgressLine() if progress else NoProgress(None)
     if not callable(progress):
         raise TypeError(f"progress: {progress!r} is neither True nor a function")
     function = progress
-    return NoProgress(lambda made: not is_no(function(made)))
+    return NoProgress(lambda made: not is_false(function(made)))

@@ -6,7 +6,7 @@ from typing import Any, Iterable, Optional, Sequence, Union
 import numpy as np
 
 from . import _relief
-from ._arguments import as_whole
+from ._arguments import as_integer
 from ._arrays import Array, as_floats, to_numpy
 from ._render import choose_cache
 from ._scene import Renderable, parse_any
@@ -111,10 +111,10 @@ class Intersector:
             raise ValueError(f"attributes: '{unknown[0]}' is not one of {', '.join(ATTRIBUTES)}")
         rays = read_rays(origins, directions, t_min, t_max)
         bits = sum(ATTRIBUTES[name] for name in set(wanted))
-        return Hits(*self._intersector.closest_hits(rays, as_whole(mask, "mask", 0, NOTHING), bits), wanted)
+        return Hits(*self._intersector.closest_hits(rays, as_integer(mask, "mask", 0, NOTHING), bits), wanted)
 
     def any_hits(self, origins: Any, directions: Any = None, t_min: Any = 0.0, t_max: Any = np.inf, *,
                  mask: int = NOTHING) -> Array:
         """(N,) bool: whether anything is hit in (t_min, t_max]. Arguments as those of closest_hits()."""
         rays = read_rays(origins, directions, t_min, t_max)
-        return self._intersector.any_hits(rays, as_whole(mask, "mask", 0, NOTHING)).view(np.bool_)
+        return self._intersector.any_hits(rays, as_integer(mask, "mask", 0, NOTHING)).view(np.bool_)

@@ -9,7 +9,7 @@ import os
 from typing import Any, Callable, Mapping, Optional, Sequence, Union
 
 from . import _relief
-from ._arguments import as_number, as_truth, is_no, is_truth, refuse
+from ._arguments import as_number, as_bool, is_false, is_bool, refuse
 from ._arrays import as_texels
 from ._parts import Camera
 from ._picture import Picture
@@ -60,7 +60,7 @@ def wrap_picture(on_picture: Optional[PictureCallback], entries: dict[str, str])
     if not callable(on_picture):
         raise TypeError(f"on_picture: {on_picture!r} is no function")
     function = on_picture
-    return lambda image: not is_no(function(Picture(image, complete=False, entries=entries)))
+    return lambda image: not is_false(function(Picture(image, complete=False, entries=entries)))
 
 
 def read_interval(value: Any) -> float:
@@ -69,7 +69,7 @@ def read_interval(value: Any) -> float:
 
 def choose_denoisers(denoise: Any) -> Optional[list[str]]:
     """Libraries to try; None where nothing is to be denoised."""
-    if is_truth(denoise):
+    if is_bool(denoise):
         return find_denoisers() if denoise else None
     if not isinstance(denoise, (str, os.PathLike)):
         refuse(denoise, "denoise", "True, False, or the library or folder of Open Image Denoise 2")
@@ -126,7 +126,7 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     keywords = choose_cache({key: value for key, value in given.items() if value is not None})
     entries = make_entries(keywords)
     denoisers, interval = choose_denoisers(denoise), read_interval(picture_interval)
-    is_checked = as_truth(check_maps, "check_maps")
+    is_checked = as_bool(check_maps, "check_maps")
     with open_progress(progress) as callback:
         answer = _relief.render(parse_any(scene, frame), keywords, callback, wrap_picture(on_picture, entries), interval,
                                 is_checked, denoisers is not None, denoisers or [])

@@ -10,7 +10,7 @@ from typing import Any, Mapping, Optional, Union, cast
 import numpy as np
 
 from . import _relief
-from ._arguments import as_number, as_whole, refuse
+from ._arguments import as_number, as_integer, refuse
 from ._arrays import Array, as_path, as_texels, is_array, to_numpy
 from ._errors import Error
 from ._mesh import Mesh
@@ -119,7 +119,7 @@ def read_aspect(size: Any) -> float:
     """Width over height."""
     if isinstance(size, str) or np.ndim(size) != 1 or len(size) != 2:
         refuse(size, "size", "two whole numbers, width and height")
-    width, height = (as_whole(side, "size", 1, MAX_PICTURE_SIZE) for side in size)
+    width, height = (as_integer(side, "size", 1, MAX_PICTURE_SIZE) for side in size)
     return width / height
 
 

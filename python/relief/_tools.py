@@ -5,7 +5,7 @@ import os
 from typing import Any, Mapping, Optional, Union, cast
 
 from . import _relief
-from ._arguments import as_whole
+from ._arguments import as_integer
 from ._arrays import as_path, is_array
 from ._mesh import Mesh
 from ._parts import Displacement
@@ -99,7 +99,7 @@ def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, 
     if isinstance(source, Mesh):
         source = Scene.from_mesh(source)
     from ._scene import parse_any
-    return Mesh._from_arrays(parse_any(cast(Any, source)).displace(as_whole(level, "level", 0, MAX_LEVEL)))
+    return Mesh._from_arrays(parse_any(cast(Any, source)).displace(as_integer(level, "level", 0, MAX_LEVEL)))
 
 
 def _convert_map(source: Displacement, mesh: Union[Mesh, None], to: dict[str, Any]) -> Displacement:

@@ -13,7 +13,7 @@ from typing import Any, Optional, Sequence, Union
 import numpy as np
 
 from . import _relief
-from ._arguments import as_whole
+from ._arguments import as_integer
 from ._rays import Intersector
 from ._scene import Path, Scene
 
@@ -40,7 +40,7 @@ def compare(scene: Union[Scene, Path], rays: Any, structures: Optional[Sequence[
     traversal, prepare_s, seconds (the least of `repeats` calls), rays_per_second, and same_hits, the share of rays whose t is
     that of the first."""
     table: list[dict[str, Any]] = []
-    first, repeats = None, as_whole(repeats, "repeats", 1, MOST_REPEATS)
+    first, repeats = None, as_integer(repeats, "repeats", 1, MOST_REPEATS)
     for structure in structures or _relief.structures():
         for traversal in _relief.traversals(structure, settings.get("engine", "cpu")):
             start = time.perf_counter()

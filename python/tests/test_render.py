@@ -133,7 +133,7 @@ class RenderTest(unittest.TestCase):
                 for call in (picture.to_png, lambda **keys: picture.save(os.path.join(folder, "a.exr"), **keys)):
                     with self.assertRaisesRegex(relief.Error, words):
                         call(**keys)
-            with self.assertRaisesRegex(relief.Error, "b.exr' is no name of a PNG"):
+            with self.assertRaisesRegex(relief.Error, "b.exr' does not end in .png"):
                 picture.to_png(os.path.join(folder, "b.exr"))
             self.assertEqual(os.listdir(folder), [])
 
