@@ -12,7 +12,7 @@ _MODULES = [properties, statistics, bake_operator, engine, panels]
 def register():
     for module in _MODULES:
         module.register()
-    if not bpy.app.binary_path:  # Blender as a Python module waits for ever at its end for classes that are still there
+    if not bpy.app.binary_path:  # as a Python module Blender never ends while classes are registered
         atexit.register(unregister)
 
 

@@ -129,9 +129,9 @@ class ReliefEngine(bpy.types.RenderEngine):
         passes.put(made["Combined"], passes.make_combined(picture.color, depsgraph.scene.render.film_transparent))
         for p in passes.wanted_passes(depsgraph.view_layer):
             passes.put(made[p.name], passes.make_pass(p, picture[p.layer], self._views[name]))
-        for name in passes.wanted_mattes(depsgraph.view_layer) if is_last else []:
+        for matte in passes.wanted_mattes(depsgraph.view_layer) if is_last else []:
             for rank in range(passes.MATTE_RANKS):
-                passes.put(made[f"{name}{rank:02}"], picture[f"{name}{rank:02}"])
+                passes.put(made[f"{matte}{rank:02}"], picture[f"{matte}{rank:02}"])
         self.end_result(result)
 
     def _finish(self, picture, depsgraph, name):

@@ -13,6 +13,19 @@ from relief_blender.report import Report
 from relief_blender.scene_export import SceneExport
 
 
+def export_moving(test, socket, last):
+    """The relief.Scene of a render with motion blur while a socket goes from 0 to a value, without the render itself."""
+    scene = bpy.context.scene
+    for frame, value in ((0, 0.0), (2, last)):
+        socket.default_value = value
+        socket.keyframe_insert("default_value", frame=frame)
+    scene.frame_set(1)
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+    with mock.patch.object(engine, "RenderJob", side_effect=relief.Error("enough")) as job, test.assertRaises(RuntimeError):
+        test.render("RELIEF")
+    return job.call_args.args[0]
+
+
 class Modes(BlenderTest):
     def check_in_edit_mode(self, ob):
         """In Edit Mode an object is seen as it was before, by Cycles too."""
@@ -97,18 +110,10 @@ class Materials(BlenderTest):
     def test_materials_without_their_normal_map_move(self):
         ob = make_grid(2)
         ob.data.uv_layers.remove(ob.data.uv_layers[0])
-        material, scene = make_material(ob), bpy.context.scene
+        material = make_material(ob)
         self.add_normal_map(material)
         socket = material.node_tree.nodes["Principled BSDF"].inputs["Roughness"]
-        for frame, value in ((0, 0.0), (2, 1.0)):
-            socket.default_value = value
-            socket.keyframe_insert("default_value", frame=frame)
-        scene.frame_set(1)
-        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
-        with mock.patch.object(engine, "RenderJob", side_effect=relief.Error("enough")) as job, \
-                self.assertRaises(RuntimeError):
-            self.render("RELIEF")
-        exported = job.call_args.args[0]
+        exported = export_moving(self, socket, 1.0)
         self.assertIn("keys", exported.materials[exported.objects[0]["material"]]["roughness"])
 
 
@@ -140,15 +145,7 @@ class ViewLayers(BlenderTest):
         color = self.check_colors()
         self.assertGreater(color[0], 3 * color[1])
         strength = background.inputs["Strength"]
-        for frame, value in ((0, 0.0), (2, 2.0)):
-            strength.default_value = value
-            strength.keyframe_insert("default_value", frame=frame)
-        scene.frame_set(1)
-        scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
-        with mock.patch.object(engine, "RenderJob", side_effect=relief.Error("enough")) as job, \
-                self.assertRaises(RuntimeError):
-            self.render("RELIEF")
-        self.assertIn("keys", job.call_args.args[0].environment["strength"])
+        self.assertIn("keys", export_moving(self, strength, 2.0).environment["strength"])
 
     def test_collections_that_are_held_out_or_indirect_are_named(self):
         scene, layer = bpy.context.scene, bpy.context.view_layer
