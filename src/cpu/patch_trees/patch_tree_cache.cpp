@@ -15,6 +15,8 @@ namespace relief::cpu {
 
 namespace {
 
+static_assert(std::atomic<TreeSlot>::is_always_lock_free);
+
 constexpr size_t kProbeCount = 8;       ///< slots looked at for one key
 constexpr size_t kMeanTreeBytes = 4096; ///< decides the size of the table
 constexpr size_t kLongestSearch = 8192; ///< slots that one eviction looks at
