@@ -42,13 +42,14 @@ struct TraceHit {
 
 /// A point of a surface, world space.
 struct SurfacePoint {
-    Vec3f position{};
+    Vec3f position{};         ///< a few errors within the edges of its triangle: scalar::leave_edges
     Vec3f geometric_normal{}; ///< of the micro-triangle, unit length, side of the winding (not of the ray)
     Vec3f shading_normal{};   ///< unit length, same side as geometric_normal
     Vec2f uv{};               ///< texture coordinates; (0, 0) without
     float area_per_uv =
         0; ///< world area of the micro-triangle over its share of the patch's (u, v), which sum to 1
-    float position_error = 0; ///< how far rounding may have moved the position, and a ray that starts there
+    float position_error =
+        0; ///< how far rounding may have moved it off its triangle, and a ray that starts there
     uint32_t instance = kNoIndex;
     uint32_t patch = kNoIndex;
 };

@@ -51,6 +51,21 @@ FN Float bound_position_error(Float corner, Float row, Float translation, Float 
     return Float(units) * (row * corner + translation * share + position * share);
 }
 
+/// `position`, moved inwards by up to a sixteenth of its triangle where an edge lies within 10 errors. The
+/// origins of its rays lie off the triangle: at a sharp crease, next to the edge, that would be behind the
+/// neighbour. `edge_b`, `edge_c`: as for make_triangle_point; `double_area`: twice the triangle's.
+FN Vec3 leave_edges(Vec3 position, Float position_error, CornerWeights weights, Vec3 edge_b, Vec3 edge_c,
+                    Float double_area) {
+    const Float most = Float(0.0625f), zero = Float(0.0f);
+    Float margin = select(double_area > zero, Float(10.0f) * position_error / double_area, zero);
+    Float to_a =
+        max(min(margin * length(edge_c - edge_b), most) - (Float(1.0f) - weights.b - weights.c), zero);
+    Float to_b = max(min(margin * length(edge_c), most) - weights.b, zero);
+    Float to_c = max(min(margin * length(edge_b), most) - weights.c, zero);
+    Float all = to_a + to_b + to_c;
+    return position + edge_b * (to_b - weights.b * all) + edge_c * (to_c - weights.c * all);
+}
+
 /// uv in a displaced patch, or a quad cut from one; corners in order.
 FN Vec2 blend_patch_uv(Vec2 c0, Vec2 c1, Vec2 c2, Vec2 c3, Vec2 at) {
     return (c0 * (Float(1.0f) - at.x) + c1 * at.x) * (Float(1.0f) - at.y) +

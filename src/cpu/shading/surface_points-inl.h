@@ -260,10 +260,11 @@ RELIEF_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const WideVe
         wide::weigh_cell_corners({Lanes16::load(lanes.u), Lanes16::load(lanes.v)},
                                  {Lanes16::load(lanes.i), Lanes16::load(lanes.j)}, is_upper, side);
     const AffineLanes m(lanes.world_from_object);
+    const WideVec3 edge_b = m.transform_vector(b - a), edge_c = m.transform_vector(c - a);
     CellPointLanes point;
-    point.triangle = wide::make_triangle_point(
-        m.transform_vector(wide::blend_corners(a, b, c, weights)) + m.translation, m.transform_vector(b - a),
-        m.transform_vector(c - a), Lanes16::load(lanes.turn), uv_area);
+    point.triangle =
+        wide::make_triangle_point(m.transform_vector(wide::blend_corners(a, b, c, weights)) + m.translation,
+                                  edge_b, edge_c, Lanes16::load(lanes.turn), uv_area);
     const Lanes16 corner = wide::max(wide::max(wide::largest_coordinate(a), wide::largest_coordinate(b)),
                                      wide::largest_coordinate(c));
     const Lanes16 row = wide::max(wide::max(wide::sum_magnitudes(m.rows[0]), wide::sum_magnitudes(m.rows[1])),
@@ -271,6 +272,9 @@ RELIEF_INLINE CellPointLanes make_cell_point(const HitLanes& lanes, const WideVe
     point.position_error = wide::bound_position_error(corner, row, wide::largest_coordinate(m.translation),
                                                       wide::largest_coordinate(point.triangle.position),
                                                       Lanes16::load(lanes.share_of_place));
+    point.triangle.position =
+        wide::leave_edges(point.triangle.position, point.position_error, weights, edge_b, edge_c,
+                          point.triangle.area_per_uv * uv_area * Lanes16(2.0f));
     return point;
 }
 

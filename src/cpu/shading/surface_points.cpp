@@ -110,15 +110,17 @@ SurfacePoint make_cell_point(const PreparedScene& scene, const TraceHit& hit, co
     SurfacePoint point;
     point.instance = hit.instance, point.patch = hit.patch;
     const Affine& world_from_object = instance.world_from_object;
+    const Vec3f edge_b = transform_vector(world_from_object, b - a);
+    const Vec3f edge_c = transform_vector(world_from_object, c - a);
+    const float uv_area = scalar::triangle_uv_area(surface.quads[hit.patch].is_triangle(), side);
     const scalar::TrianglePoint triangle = scalar::make_triangle_point(
-        transform_point(world_from_object, scalar::blend_corners(a, b, c, weights)),
-        transform_vector(world_from_object, b - a), transform_vector(world_from_object, c - a),
-        instance.is_mirrored ? -1.0f : 1.0f,
-        scalar::triangle_uv_area(surface.quads[hit.patch].is_triangle(), side));
-    point.position = triangle.position;
+        transform_point(world_from_object, scalar::blend_corners(a, b, c, weights)), edge_b, edge_c,
+        instance.is_mirrored ? -1.0f : 1.0f, uv_area);
     point.geometric_normal = triangle.normal;
     point.area_per_uv = triangle.area_per_uv;
-    point.position_error = bound_position_error(instance, corners, point.position);
+    point.position_error = bound_position_error(instance, corners, triangle.position);
+    point.position = scalar::leave_edges(triangle.position, point.position_error, weights, edge_b, edge_c,
+                                         2 * triangle.area_per_uv * uv_area);
     return point;
 }
 

@@ -38,14 +38,18 @@ CellPoint evaluate_cell(uint instance, uint patch_index, uint packed_levels, Cel
     }
     float side = float(1u << packed_patch_level(packed_levels));
     AffineData m = instances[instance].world_from_object;
-    vec3 local = blend_corners(corner[0], corner[1], corner[2], weigh_corners(place, side));
+    CornerWeights weights = weigh_corners(place, side);
+    vec3 local = blend_corners(corner[0], corner[1], corner[2], weights);
+    vec3 edge_b = transform_vector(m, corner[1] - corner[0]);
+    vec3 edge_c = transform_vector(m, corner[2] - corner[0]);
+    float uv_area = triangle_uv_area(is_triangle(quad), side);
     CellPoint point;
-    point.triangle =
-        make_triangle_point(transform_point(m, local), transform_vector(m, corner[1] - corner[0]),
-                            transform_vector(m, corner[2] - corner[0]),
-                            (instances[instance].levels & kMirrored) != 0u ? -1.0 : 1.0,
-                            triangle_uv_area(is_triangle(quad), side));
+    point.triangle = make_triangle_point(transform_point(m, local), edge_b, edge_c,
+                                         (instances[instance].levels & kMirrored) != 0u ? -1.0 : 1.0, uv_area);
     point.position_error = bound_error(instance, corner[0], corner[1], corner[2], point.triangle.position);
+    point.triangle.position =
+        leave_edges(point.triangle.position, point.position_error, weights, edge_b, edge_c,
+                    2.0 * point.triangle.area_per_uv * uv_area);
     return point;
 }
 

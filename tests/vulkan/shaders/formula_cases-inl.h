@@ -426,7 +426,7 @@ FN SurfaceResults run_surface(FormulaInput from) {
     SurfaceDerivative along_u = {b, frame, wild * 0.1f};
     SurfaceDerivative along_v = {c, frame, wild * 0.2f};
     SurfaceResults r;
-    r.position = point.position;
+    r.position = leave_edges(point.position, 0.02f, weigh_corners(place, 4.0f), b - a, c - a, 0.5f);
     r.normal = point.normal;
     r.area_per_uv = point.area_per_uv;
     r.error = bound_position_error(largest_coordinate(b), sum_magnitudes(c), 1.0f, 2.0f, from.u[0]);
