@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "math/vec.h"
+#include "math/vec_double.h"
 #include "surface/map/texels.h"
 #include "surface/patch/patch_samples.h"
 
@@ -61,7 +62,7 @@ std::optional<PatchPlace> find_place(const std::array<Point, 4>& c, const Point&
     }
     place.u = std::clamp(place.u, 0.0, 1.0), place.v = std::clamp(place.v, 0.0, 1.0);
     const Point at = blend(c, place.u, place.v);
-    place.distance = std::hypot(p.x - at.x, p.y - at.y);
+    place.distance = compute_length(p.x - at.x, p.y - at.y);
     if (!(place.distance <= kReach)) return std::nullopt;
     return place;
 }

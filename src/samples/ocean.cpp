@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "math/vec.h"
+#include "math/vec_double.h"
 #include "relief/half.h"
 #include "samples/noise.h"
 
@@ -107,7 +108,7 @@ Ocean::Wave Ocean::make_wave(uint32_t column, uint32_t row, const std::vector<Co
     const uint32_t size = config_.size, last = size - 1;
     Wave wave;
     if (column == size / 2 || row == size / 2) return wave; // has no opposite
-    const double kx = get_wave_number(column), kz = get_wave_number(row), k = std::hypot(kx, kz);
+    const double kx = get_wave_number(column), kz = get_wave_number(row), k = compute_length(kx, kz);
     if (k == 0) return wave;
     wave.there = amplitudes[row * size + column];
     wave.back = std::conj(amplitudes[((size - row) & last) * size + ((size - column) & last)]);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "math/vec_double.h"
 #include "samples/noise.h"
 #include "samples/stage.h"
 
@@ -44,7 +45,8 @@ class Floor {
                 const float half_width = 3.1f + 0.5f * (4.5f - z);
                 const Disc disc{random_.range(-half_width, half_width), z, radius};
                 const bool is_free = std::none_of(discs_.begin(), discs_.end(), [&](const Disc& other) {
-                    return std::hypot(other.x - disc.x, other.z - disc.z) < 0.93f * (other.radius + radius);
+                    return compute_length(other.x - disc.x, other.z - disc.z) <
+                           0.93f * (other.radius + radius);
                 });
                 if (!is_free) continue;
                 discs_.push_back(disc);

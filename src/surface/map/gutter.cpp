@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "math/vec_double.h"
 #include "surface/map/texels.h"
 #include "surface/mesh/uv_islands.h"
 
@@ -62,7 +63,7 @@ class GutterFinder {
     }
 
     void mark_border(const Point& a, const Point& b) {
-        const double size = std::hypot(b.x - a.x, b.y - a.y);
+        const double size = compute_length(b.x - a.x, b.y - a.y);
         if (!(size < kLongestBorder)) return;
         const int count = int(std::ceil(size / kStep)) + 1;
         constexpr int64_t kReach = GutterFill::kReach;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "math/vec_double.h"
 #include "surface/map/texels.h"
 #include "surface/mesh/polygons.h"
 #include "surface/mesh/subdivision_mesh.h"
@@ -22,7 +23,7 @@ bool is_near_edge(const Point& a, const Point& b, const Point& p) {
     const Point along{b.x - a.x, b.y - a.y}, to{p.x - a.x, p.y - a.y};
     const double size = along.x * along.x + along.y * along.y;
     const double s = size > 0 ? std::clamp((to.x * along.x + to.y * along.y) / size, 0.0, 1.0) : 0;
-    return std::hypot(to.x - s * along.x, to.y - s * along.y) <= kCoverTolerance;
+    return compute_length(to.x - s * along.x, to.y - s * along.y) <= kCoverTolerance;
 }
 
 } // namespace

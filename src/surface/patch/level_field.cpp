@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "formulas/levels.h"
 #include "math/affine.h"
+#include "math/vec_double.h"
 #include "relief/render.h"
 #include "surface/patch/level_lines.h"
 #include "surface/patch/patch_samples.h"
@@ -53,7 +54,7 @@ double count_cells(const Surface& surface, uint8_t tile, const Vec2f& a, const V
     if (tile >= map.tiles.size()) return least;
     const Texture& texture = *map.tiles[tile].texture;
     const double texels =
-        std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
+        compute_length((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
     return std::max(least, map.is_smooth ? kSmoothCells * texels : texels);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formulas/mips.h"
+#include "math/vec_double.h"
 #include "surface/map/mip_chain.h"
 
 namespace relief {
@@ -40,7 +41,7 @@ class MipChooser {
 
     double count_texels(uint8_t tile, const Vec2f& a, const Vec2f& b) const {
         const Texture& texture = *surface_.map.tiles[tile].texture;
-        return std::hypot((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
+        return compute_length((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
     }
 
     /// Smallest copy whose texels are not larger than a cell of a line at `level`.
