@@ -103,7 +103,9 @@ void close_gate() {
     }
     const nanobind::gil_scoped_release release;
     std::unique_lock lock(gate.mutex);
-    gate.changed.wait(lock, [&] { return gate.visits == 0; });
+    // Not wait(): a symbol of GCC 12, which manylinux_2_34 lacks.
+    while (!gate.changed.wait_for(lock, std::chrono::hours(1), [&] { return gate.visits == 0; })) {
+    }
 }
 
 } // namespace relief::python
