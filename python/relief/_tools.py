@@ -12,6 +12,7 @@ from ._parts import Displacement
 from ._scene import Scene
 
 CONVENTION = ("type", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale", "flip_v")
+DEFAULT_LEVEL = 5  # of meshes made of displaced surfaces
 MAX_LEVEL = 12
 KEPT = ("wrap", "dilate", "filter", "autobump")  # of a map whose texels are converted
 
@@ -83,8 +84,8 @@ def _add_warnings(said: dict[str, Any], mesh: Mesh, prefix: str = "") -> dict[st
     return said
 
 
-def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, level: int = 5,
-            **to: Any) -> Union[Displacement, Mesh]:
+def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None,
+            level: Optional[int] = None, **to: Any) -> Union[Displacement, Mesh]:
     """A map in another convention, or the surface of a scene as a mesh.
 
     source: a Displacement (its keys say what it means now), with `to` the keys of the new one: space, axes, type, frame,
@@ -92,14 +93,18 @@ def convert(source: Any, mesh: Union[Mesh, str, os.PathLike[str], None] = None, 
     unless space, axes or a preset say another. mesh: needed between tangent and object space, or between tangent frames. The
     result is a Displacement with all keys of the convention (those that a preset stands for in its place) and an array
     (H, W, 3) of float32, with type="height" (H, W, 1), or one for each tile.
-    Or a Scene, or the file of a scene or mesh: a Mesh of its displaced surfaces, 2^level x 2^level quads a patch."""
+    Or a Scene, or the file of a scene or mesh: a Mesh of its displaced surfaces, 2^level x 2^level quads a patch; level 5 if none
+    is given."""
     if not isinstance(source, (Scene, Mesh)) and is_map(source):
+        if level is not None:
+            raise TypeError("convert() of a map has no keyword 'level': that is for scenes and meshes")
         return _convert_map(as_displacement(source), as_mesh(mesh), to)
     refuse_others("convert() of a scene or mesh", mesh, to, "level")
     if isinstance(source, Mesh):
         source = Scene.from_mesh(source)
     from ._scene import parse_any
-    return Mesh._from_arrays(parse_any(cast(Any, source)).displace(as_integer(level, "level", 0, MAX_LEVEL)))
+    level = DEFAULT_LEVEL if level is None else as_integer(level, "level", 0, MAX_LEVEL)
+    return Mesh._from_arrays(parse_any(cast(Any, source)).displace(level))
 
 
 def _convert_map(source: Displacement, mesh: Union[Mesh, None], to: dict[str, Any]) -> Displacement:

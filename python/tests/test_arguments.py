@@ -91,6 +91,7 @@ class ArgumentsTest(unittest.TestCase):
             self.check(lambda **keys: relief.convert(source, **keys), ("no keyword 'space'", dict(space="object", nonsense=3)),
                        ("no keyword 'mesh'", dict(mesh=scenes.make_plane())), error=TypeError)
             self.check(lambda **keys: relief.convert(source, **keys), ("level: 'a' is not a whole number", dict(level="a")))
+        self.check(lambda **keys: relief.convert(self.map, **keys), ("a map has no keyword 'level'", dict(level=3)), error=TypeError)
         self.check(lambda **keys: relief.convert(self.map, **keys), ("mesh: .* is needed, not int", dict(mesh=5)), error=TypeError)
 
 
