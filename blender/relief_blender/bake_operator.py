@@ -34,6 +34,8 @@ def smooth_base(ob, multires, context):
 
 def read_detailed(ob, base_ob, depsgraph):
     """The evaluated mesh of an object in the axes of the base."""
+    if base_ob.matrix_world.determinant() == 0:
+        raise bake.BakeError(f'"{base_ob.name}" has a scale of zero: give it another, or apply it')
     evaluated = ob.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
     try:

@@ -105,6 +105,14 @@ class Bake(BlenderTest):
         with self.assertRaisesRegex(RuntimeError, "the base has no faces"):
             bpy.ops.relief.bake_map(width=16, height=16)
 
+    def test_a_base_without_height_is_named(self):
+        ob, other = make_grid(2), make_grid(2)
+        ob.scale.z = 0
+        bpy.context.view_layer.update()
+        self.select(ob, other)
+        with self.assertRaisesRegex(RuntimeError, "has a scale of zero"):
+            bpy.ops.relief.bake_map(width=16, height=16)
+
     def test_uvs_that_a_map_cannot_hold_are_named(self):
         detailed, ob = make_grid(2), make_grid(2)
         self.select(ob, detailed)
