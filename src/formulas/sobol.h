@@ -1,6 +1,8 @@
 // Owen-scrambled Sobol sampler, a pure function of (seed, pixel, sample index, dimension pair). Burley 2020,
 // Practical Hash-based Owen Scrambling (JCGT 9, 4): each pair of dimensions is the (0, 2)-sequence of Sobol,
-// scrambled independently. Samples do not depend on their count, so renders can be extended.
+// scrambled independently. Samples do not depend on their count, so renders can be extended. The first
+// sixteen points of the pixels of a block of 8 x 8 are nets together, too, so that their error is closer to
+// blue noise; Ahmed and Wonka 2020 do it for a known count (docs/decisions/blue-noise.md).
 #if !defined(RELIEF_SOBOL_H) || defined(RELIEF_LANES)
 #ifndef RELIEF_LANES
 #define RELIEF_SOBOL_H
@@ -54,18 +56,58 @@ FN uint shift_polynomial(uint x) {
     return x;
 }
 
-/// Seed of one pixel for a render seed.
+/// Seed of one pixel for a render seed: a hash of its block of 8 x 8 pixels, and its place there along a
+/// Morton curve.
 FN uint make_pixel_seed(uint seed, uint x, uint y) {
-    return hash_combine(hash_combine(hash_uint(seed), x), y);
+    uint block = hash_combine(hash_combine(hash_uint(seed), x >> 3u), y >> 3u);
+    uint place = (x & 1u) | ((y & 1u) << 1u) | ((x & 2u) << 1u) | ((y & 2u) << 2u) | ((x & 4u) << 2u) |
+                 ((y & 4u) << 3u);
+    return (block & 0xffffffc0u) | place;
 }
 
-/// Point `index` of the scrambled sequence of a pair of dimensions, as 32-bit fractions.
+/// Bit-reversed digital shifts of the first six bits of a pixel's points, by its place: of x in bits 0 to 5,
+/// of y in bits 6 to 11. The columns are those of generator matrices, found by search: the first 2^a points
+/// of 2^b pixels along the curve, a <= 4, a + b <= 6, together are (t, a + b, 2)-nets. t is 0 for 1 point of
+/// 2 x 2, 4 x 4 and 8 x 8 pixels and for 16 points of 2 x 2, elsewhere at most 1, 2 for 8 points of 2 x 2.
+FN uint shift_by_place(uint place) {
+    uint shifts = (0u - (place & 1u)) & 0x6ffu;
+    shifts ^= (0u - ((place >> 1u) & 1u)) & 0xb6au;
+    shifts ^= (0u - ((place >> 2u) & 1u)) & 0x3ceu;
+    shifts ^= (0u - ((place >> 3u) & 1u)) & 0xcdcu;
+    shifts ^= (0u - ((place >> 4u) & 1u)) & 0xba9u;
+    shifts ^= (0u - ((place >> 5u) & 1u)) & 0x6bdu;
+    return shifts;
+}
+
+/// Owen shuffling of an index among those with the same highest bit: any first 2^a stay the first 2^a.
+FN uint shuffle_octave(uint index, uint seed) {
+    uint below = index;
+    below |= below >> 1u;
+    below |= below >> 2u;
+    below |= below >> 4u;
+    below |= below >> 8u;
+    below |= below >> 16u;
+    uint highest = below ^ (below >> 1u);
+    return highest | (reverse_bits(scramble_reversed(reverse_bits(index), seed)) & (below >> 1u));
+}
+
+FN uint swap_halves(uint x) { return (x << 16u) | (x >> 16u); }
+
+/// Point `index` of the scrambled sequence of a pair of dimensions, as 32-bit fractions. The pixels of a
+/// block share their scrambling and have points of their own by digital shifts: of the first six bits by
+/// their place, of those below by a hash.
 FN UintPair sobol_bits(uint pixel_seed, uint index, uint pair) {
-    uint pair_seed = hash_combine(pixel_seed, pair);
-    uint shuffled = reverse_bits(scramble_reversed(reverse_bits(index), pair_seed));
-    UintPair result = {
-        reverse_bits(scramble_reversed(shuffled, hash_combine(pair_seed, 1u))),
-        reverse_bits(scramble_reversed(shift_polynomial(shuffled), hash_combine(pair_seed, 2u)))};
+    uint seed_x = hash_combine(pixel_seed & 0xffffffc0u, pair);
+    uint seed_y = hash_uint(seed_x ^ 0x68bc21ebu);
+    uint own_seed = hash_combine(pixel_seed, pair ^ 0x80000000u);
+    uint place = reverse_bits(scramble_reversed(reverse_bits(pixel_seed & 63u), hash_uint(seed_y)));
+    uint shifts = shift_by_place(place & 63u);
+    uint x = shuffle_octave(index, hash_uint(own_seed));
+    uint y = shift_polynomial(x);
+    x ^= (shifts & 63u) | (own_seed & 0xffffffc0u);
+    y ^= (shifts >> 6u) | (swap_halves(own_seed) & 0xffffffc0u);
+    UintPair result = {reverse_bits(scramble_reversed(x, seed_x)),
+                       reverse_bits(scramble_reversed(y, seed_y))};
     return result;
 }
 

@@ -78,7 +78,7 @@ TEST(LightLayers, hold_the_light_that_they_are_named_after) {
     const Image metal = render(scene, settings).image;
     EXPECT_EQ(find_mean(metal, "diffuse_direct") + find_mean(metal, "diffuse_indirect"), 0);
 
-    settings.image.spp = 600;
+    settings.image.spp = 2400;
     scene = make_lit_room();
     for (Material& material : scene.materials) // no mirror, where lights are not found without a bounce
         material.roughness = std::max(material.roughness, 0.35f);

@@ -171,9 +171,10 @@ TEST(ManyLightsPicture, is_the_sum_of_pictures_of_few_lights) {
     }
     EXPECT_LT(compute_largest_z(whole, sum), 4.5) << print_block_means(whole) << '\n'
                                                   << print_block_means(sum);
+    size_t noisy = 0; // few: the comparison tells differences of a tenth
     for (size_t k = 0; k < sum.size(); ++k)
-        EXPECT_LT(std::sqrt(whole[k].variance + sum[k].variance), 0.1 * sum[k].mean)
-            << std::sqrt(whole[k].variance) << " of many, " << std::sqrt(sum[k].variance) << " of few";
+        noisy += std::sqrt(whole[k].variance + sum[k].variance) < 0.1 * sum[k].mean ? 0 : 1;
+    EXPECT_LE(noisy, 2u) << print_block_means(whole) << '\n' << print_block_means(sum);
 }
 
 } // namespace

@@ -93,7 +93,7 @@ TEST(ShadingEnvironment, has_a_density_that_integrates_to_one_and_covers_all_lig
         for (uint32_t k = 0; k < n; ++k) {
             const Vec3f d = normalize(scalar::square_to_sphere(scalar::sobol_pair(1, k, 0)));
             const float pdf = light.pdf(d);
-            integral += pdf * 4 * std::numbers::pi / n;
+            if (std::fabs(d.y) < 0.9999f) integral += pdf * 4 * std::numbers::pi / n; // infinite at the poles
             if (light.radiance(d).x > 0) ASSERT_GT(pdf, 0) << width;
         }
         EXPECT_NEAR(integral, 1, width < 1000 ? 0.02 : 0.4) << width; // a spot of few texels is seldom met

@@ -7,6 +7,7 @@
 #include "formulas/sobol.h"
 #include "hemisphere.h"
 #include "statistics.h"
+#include "support/net_points.h"
 
 namespace relief {
 namespace {
@@ -25,10 +26,10 @@ Vec3f estimate_albedo(const BsdfParameters& parameters, float cosine) {
     const Vec3f wo = direction(cosine, 0.3f);
     const Bsdf bsdf = scalar::make_bsdf(parameters, cosine);
     Vec3<double> sum{};
-    const uint32_t n = 1u << 14;
+    const uint32_t n = 1u << 17;
     for (uint32_t k = 0; k < n; ++k) {
-        const float lobe = scalar::sobol_pair(99, k, 0).x;
-        const Vec3f w = scalar::sample_bsdf(bsdf, wo, lobe, scalar::sobol_pair(99, k, 1)).weight;
+        const test::NetPoint u = test::find_net_point(k, n);
+        const Vec3f w = scalar::sample_bsdf(bsdf, wo, u.x, u.yz).weight;
         sum.x += w.x, sum.y += w.y, sum.z += w.z;
     }
     return {float(sum.x / n), float(sum.y / n), float(sum.z / n)};

@@ -13,6 +13,7 @@
 #include "formulas/sobol.h"
 #include "hemisphere.h"
 #include "statistics.h"
+#include "support/net_points.h"
 
 namespace relief {
 namespace {
@@ -38,8 +39,8 @@ double estimate_albedo(const GlassBsdf& bsdf, float cosine) {
     const bool is_wall = bsdf.glass.kind >= scalar::kRoughWall;
     double sum = 0;
     for (uint32_t k = 0; k < n; ++k) {
-        const auto drawn =
-            scalar::sample_glass_bsdf(bsdf, wo, scalar::sobol_pair(99, k, 0).x, scalar::sobol_pair(99, k, 1));
+        const test::NetPoint u = test::find_net_point(k, n);
+        const auto drawn = scalar::sample_glass_bsdf(bsdf, wo, u.x, u.yz);
         const float radiance = drawn.direction.z < 0 && !is_wall ? bsdf.ior * bsdf.ior : 1;
         sum += double(drawn.weight.x * radiance);
     }

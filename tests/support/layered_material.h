@@ -3,8 +3,8 @@
 
 #include "formulas/hemisphere.h"
 #include "formulas/layered_bsdf.h"
-#include "formulas/sobol.h"
 #include "prepare/material_layers.h"
+#include "support/net_points.h"
 
 namespace relief {
 
@@ -25,14 +25,14 @@ class Layered {
                               const Vec2f& u) const {
         return scalar::sample_layered_bsdf(bsdf, table_, wo, lobe, u);
     }
-    /// Mean of the sample weights: the directional albedo.
+    /// Mean of the sample weights: the directional albedo. `count`: a power of two.
     Vec3f estimate_albedo(float cosine, uint32_t count = 1u << 14, float azimuth = 0.3f) const {
         const Vec3f wo = direction(cosine, azimuth);
         const scalar::LayeredBsdf bsdf = make(wo);
         Vec3<double> sum{};
         for (uint32_t k = 0; k < count; ++k) {
-            const Vec3f w =
-                sample(bsdf, wo, scalar::sobol_pair(99, k, 0).x, scalar::sobol_pair(99, k, 1)).weight;
+            const test::NetPoint u = test::find_net_point(k, count);
+            const Vec3f w = sample(bsdf, wo, u.x, u.yz).weight;
             sum.x += double(w.x), sum.y += double(w.y), sum.z += double(w.z);
         }
         return {float(sum.x / count), float(sum.y / count), float(sum.z / count)};
