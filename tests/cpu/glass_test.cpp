@@ -298,17 +298,20 @@ TEST(Glass, rays_that_enter_a_displaced_body_leave_it_from_within) {
     EXPECT_GT(left, kCount / 2);
 }
 
-/// Bounces within the body see the surface that they entered, to the end. Others are hardly any: at this
-/// index next to nothing is reflected.
+/// Of the bounces of these paths, those within the body see the surface that they entered, to the end. Few
+/// others meet the body again, by whichever of two surfaces.
 TEST(Glass, is_left_on_the_surface_that_it_was_entered_on) {
-    Material glass = make_glass(0.7f);
-    glass.ior = 1.01f;
-    const auto draw = [&](BounceLevels levels) {
+    const auto draw = [](BounceLevels levels) {
         RenderSettings settings = make_small_settings(32, 8, 1);
         settings.surface.pixel_error = 0.1f, settings.surface.bounce_levels = levels;
-        return render(make_displaced_furnace(glass), settings).image.pixels;
+        return render(make_displaced_furnace(make_glass(0.7f)), settings).image;
     };
-    EXPECT_EQ(draw(BounceLevels::automatic), draw(BounceLevels::camera));
+    const Image two_parts = draw(BounceLevels::automatic), one = draw(BounceLevels::camera);
+    const size_t channels = one.channels.size();
+    size_t different = 0;
+    for (size_t k = 0; k < one.pixels.size(); k += channels)
+        different += two_parts.pixels[k] == one.pixels[k] ? 0 : 1;
+    EXPECT_LE(different, 4u) << "27 where bounces within it see two surfaces";
 }
 
 TEST(Glass, of_weight_zero_changes_no_bit) {
