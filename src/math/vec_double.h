@@ -13,7 +13,7 @@ inline Vec3d to_double(const Vec3f& a) { return {a.x, a.y, a.z}; }
 inline Vec3f to_float(const Vec3d& a) { return {float(a.x), float(a.y), float(a.z)}; }
 inline double compute_length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
 
-/// Of a vector in a plane. std::hypot rounds as the C library pleases, and asks for glibc 2.35.
+/// Of a vector in a plane. Not std::hypot: its rounding depends on the C library, and it needs glibc 2.35.
 inline double compute_length(double x, double y) { return std::sqrt(x * x + y * y); }
 
 /// Unit vector, or zero.

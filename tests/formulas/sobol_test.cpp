@@ -163,7 +163,7 @@ TEST(Sobol, spreads_points_uniformly_over_seeds) {
 }
 
 /// A pixel whose pairs draw their points in nearly the same order would have an error far above that of
-/// others, which no number of samples mends.
+/// others, at any number of samples.
 TEST(Sobol, has_no_pixel_with_far_larger_errors_than_others) {
     constexpr uint32_t kPixels = 4096, kCount = 1024;
     double square = 0, fourth = 0, largest = 0;
