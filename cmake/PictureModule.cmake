@@ -11,7 +11,7 @@ get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIR
 list(FILTER oiio_includes EXCLUDE REGEX opencv)
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_includes}")
 add_library(relief_pictures MODULE src/io/picture/module/picture_library_oiio.cpp
-            src/io/picture/module/colour_transform_ocio.cpp)
+            src/io/picture/module/color_transform_ocio.cpp)
 target_link_libraries(relief_pictures PRIVATE relief_options OpenImageIO::OpenImageIO ${OPENCOLORIO_LIBRARY})
 target_include_directories(relief_pictures SYSTEM PRIVATE ${OPENCOLORIO_FOLDER})
 set_target_properties(relief_pictures PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})

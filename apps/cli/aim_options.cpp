@@ -68,7 +68,7 @@ Ground parse_ground(const std::string& text) {
 
 float decode_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
 
-Vec3f decode_colour(const std::string& text) {
+Vec3f decode_color(const std::string& text) {
     const unsigned long rgb = std::stoul(text.substr(1), nullptr, 16);
     const auto channel = [&](int shift) { return decode_srgb(float(rgb >> shift & 255) / 255); };
     return {channel(16), channel(8), channel(0)};
@@ -192,7 +192,7 @@ void apply_background(const AimArguments& arguments, const std::filesystem::path
     if (arguments.background.empty()) return;
     // A PNG is laid over its colour after the tone curve, so that the colour is the one that was named.
     const bool is_over = arguments.background == "transparent" || is_png(output);
-    image.background = is_over ? Vec3f{} : decode_colour(arguments.background);
+    image.background = is_over ? Vec3f{} : decode_color(arguments.background);
 }
 
 void add_display_entries(const DisplayArguments& display, Image& image) {

@@ -102,7 +102,7 @@ std::vector<Vec3f> trace_path(const Intersector& intersector, Ray ray, RayHit hi
     return corners;
 }
 
-std::string describe_colour(const RenderResult& result, const RenderSettings& settings) {
+std::string describe_color(const RenderResult& result, const RenderSettings& settings) {
     std::array<float, 4> color{};
     const std::array<const char*, 4> names = {"R", "G", "B", "A"};
     for (size_t c = 0; c < 4; ++c) {
@@ -152,7 +152,7 @@ PixelExplanation explain_pixel(const Scene& scene, const RenderSettings& setting
                                    format_vector(ray.origin), format_vector(ray.direction)) +
                        describe_hit(scene, ray, hit, attributes.texture_uv) +
                        describe_work(result.statistics, settings.image.spp) +
-                       describe_colour(result, settings);
+                       describe_color(result, settings);
     explanation.object = hit.object;
     std::mt19937 random(uint32_t(y) * 65536u + uint32_t(x));
     for (int k = 0; k < kPathCount && hit.object != kNoIndex; ++k)

@@ -71,7 +71,7 @@ const std::array<uint8_t, 4097>& get_curve() {
     return curve;
 }
 
-Image make_all_colours(const std::string& name) {
+Image make_all_colors(const std::string& name) {
     Image image;
     image.width = image.full_width = kSide * kSide;
     image.height = image.full_height = kSide;
@@ -101,7 +101,7 @@ DisplayTable::DisplayTable(const std::string& name) {
     check_tone_map(name);
     const TemporaryFile table{std::filesystem::temp_directory_path() /
                               fmt::format("relief-display-{}-{}.png", getpid(), count++)};
-    write_image(make_all_colours(name), table.file);
+    write_image(make_all_colors(name), table.file);
     const Texture texture = read_texture(table.file);
     entries_.reserve(size_t(texture.width) * texture.height);
     for (uint32_t y = 0; y < texture.height; ++y)

@@ -26,7 +26,7 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_N
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar;
 
 /// Of what is drawn over the picture.
-constexpr ImU32 kMarkColour = IM_COL32(255, 200, 60, 220), kPathColour = IM_COL32(90, 200, 255, 200);
+constexpr ImU32 kMarkColor = IM_COL32(255, 200, 60, 220), kPathColor = IM_COL32(90, 200, 255, 200);
 
 } // namespace
 
@@ -95,7 +95,7 @@ void Interface::draw_picture() {
     list->PushClipRect(corner, end);
     draw_paths(*list);
     list->PopClipRect();
-    const ImU32 line = kMarkColour;
+    const ImU32 line = kMarkColor;
     if (workbench_.tool() != Tool::paint || ImGui::GetIO().WantCaptureMouse) return;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (mouse.x >= corner.x && mouse.x < end.x && mouse.y >= corner.y && mouse.y < end.y)
@@ -114,7 +114,7 @@ void Interface::draw_paths(ImDrawList& list) {
     const auto& paths = workbench_.explanation().paths;
     if (paths.empty()) {
         if (const auto& pixel = workbench_.explained_pixel(); pixel && workbench_.is_explaining())
-            list.AddCircle(place(*pixel), 6, kMarkColour, 16, 1.5f);
+            list.AddCircle(place(*pixel), 6, kMarkColor, 16, 1.5f);
         return;
     }
     const Camera& camera = texture_picture_->camera;
@@ -126,11 +126,11 @@ void Interface::draw_paths(ImDrawList& list) {
             const bool is_of_camera = k == 1;
             if (is_of_camera && path[0] == camera.from) continue; // a point
             if (const auto line = project(path[k - 1], path[k]))
-                list.AddLine(place(line->first), place(line->second),
-                             is_of_camera ? kMarkColour : kPathColour, 1.5f);
+                list.AddLine(place(line->first), place(line->second), is_of_camera ? kMarkColor : kPathColor,
+                             1.5f);
         }
     if (const auto hit = project(paths[0][1], paths[0][1]))
-        list.AddCircle(place(hit->first), 6, kMarkColour, 16, 1.5f);
+        list.AddCircle(place(hit->first), 6, kMarkColor, 16, 1.5f);
 }
 
 void Interface::draw_panels() {

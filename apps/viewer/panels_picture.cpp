@@ -111,7 +111,7 @@ void draw_view_panel(PanelState& state) {
     if (!ImGui::CollapsingHeader("View", ImGuiTreeNodeFlags_DefaultOpen)) return;
     int view = int(state.view.view);
     if (ImGui::Combo("shown", &view, kViewNames, int(std::size(kViewNames)))) state.view.view = View(view);
-    if (state.view.view != View::colour) return;
+    if (state.view.view != View::color) return;
     ImGui::SliderFloat("exposure", &state.view.exposure, -8, 8, "%.1f stops");
     // No part of a scene.
     if (state.view.exposure != 0) ImGui::TextDisabled("of a render: --exposure %g", state.view.exposure);

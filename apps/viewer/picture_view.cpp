@@ -44,13 +44,12 @@ template <class Pixel> std::vector<uint8_t> make_bytes(const Image& image, const
     return bytes;
 }
 
-void write_bytes(const Vec3f& colour, uint8_t* bytes) {
-    bytes[0] = round_to_byte(colour.x), bytes[1] = round_to_byte(colour.y),
-    bytes[2] = round_to_byte(colour.z);
+void write_bytes(const Vec3f& color, uint8_t* bytes) {
+    bytes[0] = round_to_byte(color.x), bytes[1] = round_to_byte(color.y), bytes[2] = round_to_byte(color.z);
 }
 
 /// Colours far apart for numbers next to each other.
-Vec3f make_object_colour(float id) {
+Vec3f make_object_color(float id) {
     const float turn = id * 0.618034f;
     const auto wave = [&](float shift) {
         const float t = turn + shift;
@@ -67,11 +66,11 @@ Vec3f make_heat(float share) {
     return {ramp(0.4f, 0.7f), ramp(0, 0.35f) * (1 - ramp(0.7f, 1)), 1 - ramp(0.2f, 0.5f)};
 }
 
-std::vector<uint8_t> show_colour(const Image& image, float exposure, const DisplayTable& display) {
-    const LayerPixels colour(image, "R");
+std::vector<uint8_t> show_color(const Image& image, float exposure, const DisplayTable& display) {
+    const LayerPixels color(image, "R");
     const float gain = std::exp2(exposure);
     return make_bytes(image, [&](size_t k, uint8_t* bytes) {
-        display.show(Vec3f{colour.value(k, 0), colour.value(k, 1), colour.value(k, 2)} * gain, bytes);
+        display.show(Vec3f{color.value(k, 0), color.value(k, 1), color.value(k, 2)} * gain, bytes);
     });
 }
 
@@ -103,8 +102,8 @@ std::vector<uint8_t> make_view(const Image& image, const ViewSettings& settings,
     const auto has_surface = [&](size_t k) { return depth.is_there() && std::isfinite(depth.value(k)); };
     if (!layer.is_there()) return make_bytes(image, [](size_t, uint8_t* bytes) { write_bytes({}, bytes); });
     switch (settings.view) {
-    case View::colour:
-        return show_colour(image, settings.exposure, display);
+    case View::color:
+        return show_color(image, settings.exposure, display);
     case View::depth:
         return show_depth(image, layer);
     case View::cost:
@@ -123,7 +122,7 @@ std::vector<uint8_t> make_view(const Image& image, const ViewSettings& settings,
         break;
     }
     return make_bytes(image, [&](size_t k, uint8_t* bytes) {
-        write_bytes(has_surface(k) ? make_object_colour(layer.value(k)) : Vec3f{}, bytes);
+        write_bytes(has_surface(k) ? make_object_color(layer.value(k)) : Vec3f{}, bytes);
     });
 }
 

@@ -10,11 +10,11 @@
 
 namespace relief::viewer {
 
-enum class View { colour, normal, depth, uv, object, cost, samples };
+enum class View { color, normal, depth, uv, object, cost, samples };
 inline constexpr const char* kViewNames[] = {"colour", "normal", "depth", "uv", "object", "cost", "samples"};
 
 struct ViewSettings {
-    View view = View::colour;
+    View view = View::color;
     float exposure = 0; ///< of the colour, in powers of two
 };
 

@@ -18,7 +18,7 @@ namespace relief {
 namespace {
 
 using Channels = std::array<const char*, 3>;
-constexpr Channels kColour = {"R", "G", "B"}, kNoisy = {"noisy.R", "noisy.G", "noisy.B"};
+constexpr Channels kColor = {"R", "G", "B"}, kNoisy = {"noisy.R", "noisy.G", "noisy.B"};
 constexpr Channels kAlbedo = {"guide_albedo.R", "guide_albedo.G", "guide_albedo.B"},
                    kDirect = {"direct.R", "direct.G", "direct.B"},
                    kNormal = {"guide_N.X", "guide_N.Y", "guide_N.Z"};
@@ -151,8 +151,8 @@ std::string Denoiser::version() const {
 bool Denoiser::denoise(Image& picture, const std::function<bool()>& is_cancelled) const {
     if (picture.find_channel(kNoisy[0]))
         throw Error(ErrorKind::bad_input, {"the picture is denoised already", "", ""});
-    const std::array<size_t, 3> colour = find_channels(picture, kColour);
-    const std::vector<float> noisy = take_channels(picture, kColour);
+    const std::array<size_t, 3> color = find_channels(picture, kColor);
+    const std::vector<float> noisy = take_channels(picture, kColor);
     std::vector<float> direct = take_channels(picture, kDirect), indirect = subtract(noisy, direct);
     std::vector<float> albedo = take_channels(picture, kAlbedo), normal = take_channels(picture, kNormal);
     const auto filter = [&](std::vector<float>& light) {
@@ -169,7 +169,7 @@ bool Denoiser::denoise(Image& picture, const std::function<bool()>& is_cancelled
     std::vector<float> clean(direct.size());
     for (size_t k = 0; k < clean.size(); ++k) clean[k] = direct[k] + indirect[k];
     append_channels(kNoisy, picture);
-    put_channels(clean, colour, picture);
+    put_channels(clean, color, picture);
     put_channels(noisy, find_channels(picture, kNoisy), picture);
     picture.metadata["relief:denoiser"] = "Open Image Denoise " + version();
     return true;

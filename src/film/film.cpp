@@ -209,7 +209,7 @@ size_t Film::pixel_index(int x, int y) const {
 }
 
 /// Without further layers a sample is five additions.
-void Film::add_colour(int x, int y, const FilmSample& sample) {
+void Film::add_color(int x, int y, const FilmSample& sample) {
     const size_t index = pixel_index(x, y);
     double* sums = sums_.data() + index * stride_;
     add_to(sums, sample.radiance);
@@ -218,9 +218,9 @@ void Film::add_colour(int x, int y, const FilmSample& sample) {
 }
 
 void Film::add_sample(int x, int y, const FilmSample& sample) {
-    const bool has_colour_alone =
+    const bool has_color_alone =
         stride_ == kRadianceSums && hit_counts_.empty() && depths_.empty() && !needs_hit_ids();
-    if (has_colour_alone) return add_colour(x, y, sample);
+    if (has_color_alone) return add_color(x, y, sample);
     FilmSums sums;
     const auto square = [](float v) { return double(v) * v; };
     const bool is_hit = sample.id != 0;

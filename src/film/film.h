@@ -140,7 +140,7 @@ class Film {
 
   private:
     size_t pixel_index(int x, int y) const;
-    void add_colour(int x, int y, const FilmSample& sample);
+    void add_color(int x, int y, const FilmSample& sample);
     void add(int x, int y, const FilmSums& added, float alpha);
     void add_nearest(size_t pixel, float depth, uint32_t id);
     void add_mattes(size_t pixel, std::span<const uint32_t> hit_ids);

@@ -30,8 +30,8 @@ Image make_sheet(const RenderSettings& settings) {
     return sheet;
 }
 
-void set_pixel(Image& image, int x, int y, const Vec3f& colour) {
-    image.at(x, y, 0) = colour.x, image.at(x, y, 1) = colour.y, image.at(x, y, 2) = colour.z;
+void set_pixel(Image& image, int x, int y, const Vec3f& color) {
+    image.at(x, y, 0) = color.x, image.at(x, y, 1) = color.y, image.at(x, y, 2) = color.z;
 }
 
 void copy_picture(const Image& picture, int x0, int y0, Image& sheet) {
@@ -90,32 +90,32 @@ float shade(const Vec3f& normal, const Vec3f& direction) {
     return 0.35f + 0.65f * std::fabs(dot(normal, normalize(direction)));
 }
 
-struct PointColours {
+struct PointColors {
     Vec3f axes = kPaper, folds = kPaper;
 };
 
-PointColours colour_point(const PreparedScene& scene, const Ray& ray, const RayHit& hit, float longest) {
-    PointColours colours;
-    if (hit.object == kNoIndex) return colours;
+PointColors color_point(const PreparedScene& scene, const Ray& ray, const RayHit& hit, float longest) {
+    PointColors colors;
+    if (hit.object == kNoIndex) return colors;
     const Instance& instance = scene.instances[hit.object];
     const Surface& surface = scene.surfaces[instance.surface];
     const float light = shade(hit.normal, ray.direction);
-    colours.axes = colours.folds = Vec3f{0.5f, 0.5f, 0.5f} * light;
-    if (!surface.has_displacement) return colours;
+    colors.axes = colors.folds = Vec3f{0.5f, 0.5f, 0.5f} * light;
+    if (!surface.has_displacement) return colors;
     const Place place = find_place(surface, hit.patch, hit.uv);
     const Vec3f half{0.5f, 0.5f, 0.5f};
-    colours.axes = (half + place.displacement * (0.5f / longest)) * light;
+    colors.axes = (half + place.displacement * (0.5f / longest)) * light;
     const Vec3f base_normal = transform_normal(instance.object_space.from_origin, place.base.frame.n);
     const float facing = dot(hit.normal, base_normal) * (instance.is_mirrored ? -1.0f : 1.0f);
-    if (facing < 0) colours.folds = Vec3f{0.9f, 0.08f, 0.05f} * light;
-    return colours;
+    if (facing < 0) colors.folds = Vec3f{0.9f, 0.08f, 0.05f} * light;
+    return colors;
 }
 
 /// Frames of some patches as arrows on the base: t or x red, b or y green, n or z blue.
 void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
                  const RenderSettings& settings, Image& sheet) {
     constexpr uint32_t kMostFrames = 48;
-    constexpr std::array<Vec3f, 3> kColours{{{0.9f, 0.05f, 0.05f}, {0.05f, 0.7f, 0.05f}, {0.1f, 0.2f, 1.0f}}};
+    constexpr std::array<Vec3f, 3> kColors{{{0.9f, 0.05f, 0.05f}, {0.05f, 0.7f, 0.05f}, {0.1f, 0.2f, 1.0f}}};
     for (const Instance& instance : scene.instances) {
         const Surface& surface = scene.surfaces[instance.surface];
         if (!surface.has_displacement) continue;
@@ -137,7 +137,7 @@ void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
                 const scalar::CameraProjection end = scalar::project_point(camera, from + along);
                 if (end.distance > 0)
                     draw_line(sheet, {settings.image.width, settings.image.height}, {start.x, start.y},
-                              {end.x, end.y}, kColours[k]);
+                              {end.x, end.y}, kColors[k]);
             }
         }
     }
@@ -166,9 +166,9 @@ Image make_check_picture(const Scene& scene, const RenderSettings& settings,
     const float longest = find_longest(*prepared, hits);
     for (size_t k = 0; k < rays.size(); ++k) {
         const int x = int(k % size_t(plain.image.width)), y = int(k / size_t(plain.image.width));
-        const PointColours colours = colour_point(*prepared, rays[k], hits[k], longest);
-        set_pixel(sheet, x, plain.image.height + y, colours.axes);
-        set_pixel(sheet, plain.image.width + x, plain.image.height + y, colours.folds);
+        const PointColors colors = color_point(*prepared, rays[k], hits[k], longest);
+        set_pixel(sheet, x, plain.image.height + y, colors.axes);
+        set_pixel(sheet, plain.image.width + x, plain.image.height + y, colors.folds);
     }
     draw_frames(*prepared, camera, plain, sheet);
     steps.add(1);

@@ -60,10 +60,10 @@ void validate_settings(const RenderSettings& s) {
             "0: not regarded, or up to 1, as a share of brightness");
     require(s.image.time_limit_s >= 0 && std::isfinite(s.image.time_limit_s),
             "the time limit is out of range", "seconds, at least 0 (none)");
-    const auto is_colour = [](const Vec3f& c) {
+    const auto is_color = [](const Vec3f& c) {
         return std::isfinite(c.x + c.y + c.z) && std::min({c.x, c.y, c.z}) >= 0;
     };
-    require(!s.image.background || is_colour(*s.image.background), "the background is no colour",
+    require(!s.image.background || is_color(*s.image.background), "the background is no colour",
             "linear Rec.709, each at least 0, finite");
     require(s.image.first_sample >= 0 && s.image.first_sample <= (1 << 30),
             "the first sample is out of range", "0 to 1073741824");

@@ -48,15 +48,15 @@ void expect_background(const Image& image, const Image& sky, const Vec3f& backgr
 TEST(Background, is_the_environment_a_colour_or_nothing) {
     const Image sky = render_with(EngineKind::cpu, std::nullopt);
     EXPECT_FLOAT_EQ(sky.at(1, 1, *sky.find_channel("R")), 0.5f);
-    for (const Vec3f& colour : {Vec3f{}, Vec3f{0.1f, 2, 0.3f}})
-        expect_background(render_with(EngineKind::cpu, colour), sky, colour);
+    for (const Vec3f& color : {Vec3f{}, Vec3f{0.1f, 2, 0.3f}})
+        expect_background(render_with(EngineKind::cpu, color), sky, color);
 }
 
 #ifdef RELIEF_VULKAN
 TEST(Background, of_a_device_is_the_same) {
     const Image sky = render_with(EngineKind::vulkan, std::nullopt);
-    for (const Vec3f& colour : {Vec3f{}, Vec3f{0.1f, 2, 0.3f}})
-        expect_background(render_with(EngineKind::vulkan, colour), sky, colour);
+    for (const Vec3f& color : {Vec3f{}, Vec3f{0.1f, 2, 0.3f}})
+        expect_background(render_with(EngineKind::vulkan, color), sky, color);
 }
 #endif
 

@@ -107,9 +107,9 @@ TEST_F(AimOptionsTest, no_picture_of_a_turntable_and_no_ground_replaces_what_is_
 }
 
 TEST_F(AimOptionsTest, backgrounds_and_exposure_reach_the_png) {
-    const Image colour = render("colour.png", {"--background", "#ff0080"});
-    EXPECT_EQ(colour.at(0, 0, 0), 1);
-    EXPECT_EQ(colour.at(0, 0, 1), 0);
+    const Image color = render("colour.png", {"--background", "#ff0080"});
+    EXPECT_EQ(color.at(0, 0, 0), 1);
+    EXPECT_EQ(color.at(0, 0, 1), 0);
     const Image film = render("film.exr", {"--background", "transparent"});
     EXPECT_EQ(film.at(0, 0, *film.find_channel("R")), 0);
     ASSERT_EQ(run({"merge", "film.exr", "-o", "brighter.png", "--exposure", "3"}).exit_code, 0);

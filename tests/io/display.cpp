@@ -21,7 +21,7 @@ Image make_image(const std::vector<float>& rgba) {
 
 TEST_F(Display, agx_goes_from_black_to_white_through_the_middle) {
     const DisplaySettings agx;
-    const auto show_grey = [&](float x) { return show_colour({x, x, x}, agx); };
+    const auto show_grey = [&](float x) { return show_color({x, x, x}, agx); };
     EXPECT_LT(show_grey(0).x, 0.01f);
     EXPECT_GT(show_grey(1e5f).x, 0.99f);
     // Half of the code values of a 2.2 display.
@@ -34,7 +34,7 @@ TEST_F(Display, agx_goes_from_black_to_white_through_the_middle) {
         EXPECT_GE(shown, last - 1e-5f);
         last = shown;
     }
-    const Vec3f broken = show_colour({NAN, -1, INFINITY}, agx);
+    const Vec3f broken = show_color({NAN, -1, INFINITY}, agx);
     for (const float value : {broken.x, broken.y, broken.z}) EXPECT_TRUE(value >= 0 && value <= 1) << value;
 }
 
@@ -49,7 +49,7 @@ TEST_F(Display, strong_blue_stays_blue_in_agx_and_turns_in_filmic) {
     const auto shift = [&](DisplayTransform transform) {
         DisplaySettings settings;
         settings.transform = transform;
-        return std::fabs(find_hue(show_colour(blue, settings)) - hue);
+        return std::fabs(find_hue(show_color(blue, settings)) - hue);
     };
     EXPECT_LT(shift(DisplayTransform::agx), 8);
     EXPECT_GT(shift(DisplayTransform::filmic), shift(DisplayTransform::agx));
@@ -58,12 +58,12 @@ TEST_F(Display, strong_blue_stays_blue_in_agx_and_turns_in_filmic) {
 TEST_F(Display, standard_is_the_transfer_function_alone) {
     DisplaySettings settings;
     settings.transform = DisplayTransform::standard;
-    EXPECT_NEAR(show_colour({0.2140411f, 0, 0}, settings).x, 0.5f, 1e-5f);
-    EXPECT_NEAR(show_colour({7, 0, 0}, settings).x, 1, 1e-6f);
+    EXPECT_NEAR(show_color({0.2140411f, 0, 0}, settings).x, 0.5f, 1e-5f);
+    EXPECT_NEAR(show_color({7, 0, 0}, settings).x, 1, 1e-6f);
     settings.transform = DisplayTransform::raw;
-    EXPECT_EQ(show_colour({0.25f, 7, -1}, settings).x, 0.25f);
-    EXPECT_EQ(show_colour({0.25f, 7, -1}, settings).y, 1);
-    EXPECT_EQ(show_colour({0.25f, 7, -1}, settings).z, 0);
+    EXPECT_EQ(show_color({0.25f, 7, -1}, settings).x, 0.25f);
+    EXPECT_EQ(show_color({0.25f, 7, -1}, settings).y, 1);
+    EXPECT_EQ(show_color({0.25f, 7, -1}, settings).z, 0);
 }
 
 /// Figures of ACES 1.0 (RRT and ODT for sRGB, Academy 2014): middle grey 0.18 shows as 0.10 of the white.
@@ -71,12 +71,12 @@ TEST_F(Display, aces_shows_middle_grey_at_a_tenth_and_white_at_sixteen_times_whi
     Image image = make_image({0, 0, 0, 1});
     image.metadata["relief:display"] = "aces";
     const DisplaySettings aces = read_display_settings(image);
-    const Vec3f grey = show_colour({0.18f, 0.18f, 0.18f}, aces);
+    const Vec3f grey = show_color({0.18f, 0.18f, 0.18f}, aces);
     EXPECT_NEAR(scalar::decode_srgb(grey.x), 0.10f, 0.005f);
     EXPECT_NEAR(grey.x, grey.z, 2e-3f) << "grey stays grey";
-    EXPECT_LT(show_colour({0, 0, 0}, aces).x, 0.01f);
-    EXPECT_GT(show_colour({16.3f, 16.3f, 16.3f}, aces).x, 0.99f);
-    const Vec3f broken = show_colour({NAN, -1, INFINITY}, aces);
+    EXPECT_LT(show_color({0, 0, 0}, aces).x, 0.01f);
+    EXPECT_GT(show_color({16.3f, 16.3f, 16.3f}, aces).x, 0.99f);
+    const Vec3f broken = show_color({NAN, -1, INFINITY}, aces);
     for (const float value : {broken.x, broken.y, broken.z}) EXPECT_TRUE(value >= 0 && value <= 1) << value;
 }
 

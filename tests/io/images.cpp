@@ -83,7 +83,7 @@ TEST_F(ImageFiles, png_is_tone_mapped_and_hdr_keeps_radiance) {
     const Image png = read_image(folder_ / "a.png");
     EXPECT_EQ(png.pixels[0], 0.0f);
     EXPECT_GT(png.pixels[3], 0.9f);
-    EXPECT_NEAR(png.pixels[3], show_colour({4, 4, 4}, {}).x, 0.003f);
+    EXPECT_NEAR(png.pixels[3], show_color({4, 4, 4}, {}).x, 0.003f);
     write_image(image, folder_ / "a.hdr");
     EXPECT_NEAR(read_image(folder_ / "a.hdr").pixels[3], 4.0f, 0.03f);
 }
@@ -98,12 +98,12 @@ TEST_F(ImageFiles, written_rows_are_those_of_the_picture) {
     const Image hdr = read_image(folder_ / "a.hdr"), png = read_image(folder_ / "a.png");
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
-            const Vec3f colour{image.at(x, y, 2), image.at(x, y, 0), image.at(x, y, 1)};
-            const float step = std::max({colour.x, colour.y, colour.z}) / 128;
-            ASSERT_NEAR(hdr.at(x, y, 0), colour.x, step);
-            ASSERT_NEAR(hdr.at(x, y, 1), colour.y, step);
-            ASSERT_NEAR(hdr.at(x, y, 2), colour.z, step);
-            const Vec3f shown = show_colour(colour, {}); // dithered to one of two steps
+            const Vec3f color{image.at(x, y, 2), image.at(x, y, 0), image.at(x, y, 1)};
+            const float step = std::max({color.x, color.y, color.z}) / 128;
+            ASSERT_NEAR(hdr.at(x, y, 0), color.x, step);
+            ASSERT_NEAR(hdr.at(x, y, 1), color.y, step);
+            ASSERT_NEAR(hdr.at(x, y, 2), color.z, step);
+            const Vec3f shown = show_color(color, {}); // dithered to one of two steps
             ASSERT_NEAR(png.at(x, y, 0), shown.x, 1.001f / 255);
             ASSERT_NEAR(png.at(x, y, 1), shown.y, 1.001f / 255);
             ASSERT_NEAR(png.at(x, y, 2), shown.z, 1.001f / 255);

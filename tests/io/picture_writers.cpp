@@ -118,7 +118,7 @@ TEST_F(PictureWriters, png_of_several_chunks_is_whole) {
     const Image read = read_image(folder_ / "a.png");
     ASSERT_EQ(read.pixels.size(), image.pixels.size());
     for (size_t i = 0; i < image.pixels.size(); i += 3) {
-        const Vec3f shown = show_colour({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]}, {});
+        const Vec3f shown = show_color({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]}, {});
         ASSERT_NEAR(read.pixels[i], shown.x, kStep);
         ASSERT_NEAR(read.pixels[i + 1], shown.y, kStep);
         ASSERT_NEAR(read.pixels[i + 2], shown.z, kStep);

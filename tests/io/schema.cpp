@@ -63,7 +63,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     expect_keys("/properties/materials/additionalProperties", scene_keys::kMaterial);
     expect_keys("/properties/displacements/additionalProperties", scene_keys::kDisplacement);
     expect_keys("/properties/materials/additionalProperties/properties/base_color_texture/oneOf/1",
-                scene_keys::kColourTexture);
+                scene_keys::kColorTexture);
     for (const char* texture :
          {"/properties/materials/additionalProperties/properties/roughness_texture/oneOf/1",
           "/properties/materials/additionalProperties/properties/metallic_texture/oneOf/1",

@@ -21,7 +21,7 @@ namespace {
 
 Document open_document(const SceneInput& input) { return Document(input, load_input(input).scene); }
 
-std::vector<float> render_colours(const Scene& scene) {
+std::vector<float> render_colors(const Scene& scene) {
     return render(scene, make_small_settings()).image.pixels;
 }
 
@@ -58,7 +58,7 @@ TEST_F(DocumentTest, a_changed_scene_is_read_again_as_it_was_seen) {
     EXPECT_EQ(again.picture.spp, 4);
     EXPECT_EQ(again.displacements[0].axes, (AxisMap{{0, 2, 1}, {1, -1, 1}}));
     EXPECT_EQ(again.materials[0].metallic, 0.5f);
-    EXPECT_EQ(render_colours(again), render_colours(make_whole(*document.snapshot())));
+    EXPECT_EQ(render_colors(again), render_colors(make_whole(*document.snapshot())));
 }
 
 TEST_F(DocumentTest, a_mesh_and_its_map_are_saved_with_their_convention) {
@@ -70,7 +70,7 @@ TEST_F(DocumentTest, a_mesh_and_its_map_are_saved_with_their_convention) {
     document.save(folder_ / "mesh.json", image_);
     const Scene again = load_scene(folder_ / "mesh.json");
     EXPECT_EQ(again.displacements[0].axes, AxisMap());
-    EXPECT_EQ(render_colours(again), render_colours(make_whole(*document.snapshot())));
+    EXPECT_EQ(render_colors(again), render_colors(make_whole(*document.snapshot())));
 }
 
 TEST_F(DocumentTest, painted_maps_are_written_beside_the_scene) {
@@ -85,7 +85,7 @@ TEST_F(DocumentTest, painted_maps_are_written_beside_the_scene) {
     EXPECT_FALSE(document.has_painted());
     const Scene again = load_scene(folder_ / "painted.json");
     EXPECT_EQ(read_texel(*again.displacements[0].tiles[0].texture, 12, 20).z, 0.37f);
-    EXPECT_EQ(render_colours(again), render_colours(make_whole(*document.snapshot())));
+    EXPECT_EQ(render_colors(again), render_colors(make_whole(*document.snapshot())));
     EXPECT_EQ(read_texel(read_texture(before), 12, 20).z,
               read_texel(*make_bumps(false), 12, 20).z); // the map that was opened stays
 }

@@ -112,13 +112,13 @@ TEST(PictureView, layers_become_colours_and_nothing_is_black) {
     image.channels = {"R", "G", "B", "depth.Z", "N.X", "N.Y", "N.Z", "uv.X", "uv.Y", "id.I"};
     image.pixels = {1, 0, 0, 2, 0, 0, 1, 0.5f, 1, 3, 0, 0, 1, INFINITY, 0, 0, 0, 0, 0, 0};
     const auto show = [&](View view) { return make_view(image, {view, 0}, {}); };
-    EXPECT_EQ(show(View::colour), (std::vector<uint8_t>{255, 0, 0, 255, 0, 0, 255, 255}));
+    EXPECT_EQ(show(View::color), (std::vector<uint8_t>{255, 0, 0, 255, 0, 0, 255, 255}));
     EXPECT_EQ(show(View::normal), (std::vector<uint8_t>{128, 128, 255, 255, 0, 0, 0, 255}));
     EXPECT_EQ(show(View::depth), (std::vector<uint8_t>{255, 255, 255, 255, 0, 0, 0, 255}));
     EXPECT_EQ(show(View::uv), (std::vector<uint8_t>{128, 255, 0, 255, 0, 0, 0, 255}));
     EXPECT_EQ(show(View::object)[4], 0);
     EXPECT_EQ(show(View::cost), (std::vector<uint8_t>{0, 0, 0, 255, 0, 0, 0, 255})); // no such layer
-    EXPECT_NEAR(make_view(image, {View::colour, -1}, {})[0], 188, 1); // half of the light, by sRGB
+    EXPECT_NEAR(make_view(image, {View::color, -1}, {})[0], 188, 1); // half of the light, by sRGB
 }
 
 } // namespace relief::viewer

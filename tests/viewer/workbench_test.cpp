@@ -393,10 +393,10 @@ TEST_F(WorkbenchTest, a_denoised_picture_is_shown_in_place_of_the_noisy_one) {
     const Image& shown = bench_->shown_picture()->image;
     EXPECT_NE(get_channel(shown, "R"), get_channel(noisy, "R"));
     EXPECT_EQ(get_channel(shown, "noisy.R"), get_channel(noisy, "R"));
-    const std::vector<float> colour = get_channel(noisy, "R");
+    const std::vector<float> color = get_channel(noisy, "R");
     ASSERT_TRUE(bench_->set_denoised(false));
     ASSERT_TRUE(reach_done());
-    EXPECT_EQ(get_channel(bench_->shown_picture()->image, "R"), colour);
+    EXPECT_EQ(get_channel(bench_->shown_picture()->image, "R"), color);
 }
 
 TEST_F(WorkbenchTest, a_doubt_is_told_until_the_map_is_mended) {

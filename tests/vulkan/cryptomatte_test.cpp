@@ -62,9 +62,9 @@ TEST(DeviceCryptomatte, goes_on_to_the_bits_of_one_render_and_leaves_the_colours
     EXPECT_EQ(resumed.pixels, whole.pixels);
     RenderSettings plain = make_settings(EngineKind::vulkan, 40);
     plain.image.layers.clear();
-    const Image colours = render(scene, plain).image;
-    for (size_t k = 0; k < colours.pixels.size(); ++k)
-        ASSERT_EQ(colours.pixels[k], whole.pixels[k / 4 * whole.channels.size() + k % 4]) << k;
+    const Image colors = render(scene, plain).image;
+    for (size_t k = 0; k < colors.pixels.size(); ++k)
+        ASSERT_EQ(colors.pixels[k], whole.pixels[k / 4 * whole.channels.size() + k % 4]) << k;
 }
 
 } // namespace relief::vulkan::tests

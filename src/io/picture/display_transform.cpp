@@ -106,9 +106,9 @@ void read_background(const std::string& text, DisplaySettings& settings) {
 }
 
 /// Made once, which takes half a second, and never destroyed: its library may be gone by then.
-std::shared_ptr<const ColourTransform> get_aces_display() {
+std::shared_ptr<const ColorTransform> get_aces_display() {
     static const auto* const transform =
-        new std::shared_ptr<const ColourTransform>(get_picture_library("ACES").make_aces_display());
+        new std::shared_ptr<const ColorTransform>(get_picture_library("ACES").make_aces_display());
     return *transform;
 }
 
@@ -129,7 +129,7 @@ DisplaySettings read_display_settings(const Image& image) {
     return settings;
 }
 
-Vec3f show_colour(const Vec3f& linear, const DisplaySettings& settings) {
+Vec3f show_color(const Vec3f& linear, const DisplaySettings& settings) {
     const auto limit = [&](float x) { return x > 0 ? std::min(x * settings.factor, 1e6f) : 0.0f; };
     const Vec3f limited{limit(linear.x), limit(linear.y), limit(linear.z)};
     if (settings.transform == DisplayTransform::aces) return clamp_to_unit(settings.aces->apply(limited));

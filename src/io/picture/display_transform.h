@@ -10,7 +10,7 @@
 
 namespace relief {
 
-class ColourTransform;
+class ColorTransform;
 
 /// `agx` (Sobotka 2022): log curve on inset primaries; strong colours keep their hue and fade to white.
 /// `aces`: the output transform of ACES 1.0 for SDR video, by OpenColorIO; middle grey shows darker. `filmic`
@@ -27,9 +27,9 @@ struct DisplaySettings {
     DisplayTransform transform = DisplayTransform::agx;
     float factor = 1; ///< of linear colours, 2^EV
     bool is_transparent = false;
-    std::optional<Vec3f> background;             ///< as shown, sRGB values in [0, 1]
-    int bits = 8;                                ///< of a value in a PNG file
-    std::shared_ptr<const ColourTransform> aces; ///< of that transform alone
+    std::optional<Vec3f> background;            ///< as shown, sRGB values in [0, 1]
+    int bits = 8;                               ///< of a value in a PNG file
+    std::shared_ptr<const ColorTransform> aces; ///< of that transform alone
 };
 
 /// Reads the header entries; what is missing or malformed has its default. Throws Error{failed} where the
@@ -38,7 +38,7 @@ DisplaySettings read_display_settings(const Image& image);
 
 /// sRGB values in [0, 1] of a linear colour, of `raw` linear ones. Negative and NaN components count as 0,
 /// infinite ones as 1.
-Vec3f show_colour(const Vec3f& linear, const DisplaySettings& settings);
+Vec3f show_color(const Vec3f& linear, const DisplaySettings& settings);
 
 /// EV at which the geometric mean of the luminances, of pixels that hit something if there are any, becomes
 /// middle grey (0.18); within [-16, 16], 0 for a black picture.

@@ -148,7 +148,7 @@ std::optional<std::string> find_missized_exr_attribute(std::istream& stream, uin
     }
 }
 
-std::string find_exr_colour_tag(std::istream& stream) {
+std::string find_exr_color_tag(std::istream& stream) {
     if (!read_start(stream)) return {};
     while (const std::optional<Attribute> attribute = read_attribute(stream)) {
         if (attribute->name == "chromaticities") return "attribute chromaticities";

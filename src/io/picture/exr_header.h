@@ -17,6 +17,6 @@ std::optional<std::string> find_missized_exr_attribute(std::istream& stream, uin
 
 /// What the header of an EXR stream says of colours: "attribute chromaticities", kRenderedTag for a picture
 /// that Relief rendered; empty: nothing, or no EXR.
-std::string find_exr_colour_tag(std::istream& stream);
+std::string find_exr_color_tag(std::istream& stream);
 
 } // namespace relief

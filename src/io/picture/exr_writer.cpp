@@ -6,7 +6,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
-#include "io/picture/colour_space.h"
+#include "io/picture/color_space.h"
 #include "io/picture/exr_names.h"
 #include "io/picture/exr_threads.h"
 #include "io/picture/image_coders.h"
@@ -40,7 +40,7 @@ Imf::Header make_header(const Image& image) {
     const int full_height = image.full_height > 0 ? image.full_height : image.y0 + image.height;
     Imf::Header header(Imath::Box2i(Imath::V2i(0), Imath::V2i(full_width - 1, full_height - 1)),
                        Imath::Box2i(first, first + Imath::V2i(image.width - 1, image.height - 1)));
-    if (const auto space = image.metadata.find(kColourSpaceTag); space != image.metadata.end())
+    if (const auto space = image.metadata.find(kColorSpaceTag); space != image.metadata.end())
         add_chromaticities(space->second, header);
     for (const auto& [name, value] : image.metadata) {
         // The pixels' own attributes win; OpenEXR refuses empty names and texts for values of other types.

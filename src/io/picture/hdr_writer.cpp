@@ -19,9 +19,9 @@ float clamp_to_rgbe(float value) {
     return value > 0 ? std::min(value, kLargest) : 0; // false for NaN
 }
 
-Rgbe encode_colour(const Vec3f& colour) {
+Rgbe encode_color(const Vec3f& color) {
     constexpr float kLeast = 1e-32f;
-    const Vec3f held{clamp_to_rgbe(colour.x), clamp_to_rgbe(colour.y), clamp_to_rgbe(colour.z)};
+    const Vec3f held{clamp_to_rgbe(color.x), clamp_to_rgbe(color.y), clamp_to_rgbe(color.z)};
     const float brightest = std::max({held.x, held.y, held.z});
     if (brightest < kLeast) return {};
     int exponent = 0;
@@ -59,12 +59,12 @@ void encode_hdr(int width, int height, const FillRow<Vec3f>& fill_row, CheckedFi
     const std::string header =
         fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", height, width);
     file.write(header.data(), header.size());
-    std::vector<Vec3f> colours(static_cast<size_t>(width));
-    std::vector<Rgbe> row(colours.size());
+    std::vector<Vec3f> colors(static_cast<size_t>(width));
+    std::vector<Rgbe> row(colors.size());
     std::vector<uint8_t> bytes;
     for (int y = 0; y < height; ++y) {
-        fill_row(y, colours);
-        std::transform(colours.begin(), colours.end(), row.begin(), encode_colour);
+        fill_row(y, colors);
+        std::transform(colors.begin(), colors.end(), row.begin(), encode_color);
         if (width < kNarrowest || width > kWidest) {
             file.write(row.data(), row.size() * sizeof(Rgbe));
             continue;

@@ -123,9 +123,8 @@ bool has_near_display(const PixelHeader& header) {
            header.full_height <= 4 * header.height;
 }
 
-std::string find_colour_tag(std::istream& stream) {
-    for (std::string (*find)(std::istream&) :
-         {find_png_colour_tag, find_exr_colour_tag, find_tiff_colour_tag}) {
+std::string find_color_tag(std::istream& stream) {
+    for (std::string (*find)(std::istream&) : {find_png_color_tag, find_exr_color_tag, find_tiff_color_tag}) {
         std::string tag = find(stream);
         stream.clear();
         stream.seekg(0);

@@ -22,7 +22,7 @@ std::unique_ptr<PixelSource> open_image_bytes(std::string_view bytes, const std:
 Texture parse_texture(std::string_view bytes, const std::string& name);
 
 /// What a file's chunks or attributes say of its values being colours, without guesses by format; or empty.
-std::string find_colour_tag(std::istream& stream);
+std::string find_color_tag(std::istream& stream);
 
 /// True where the display window is at most four times as wide and high as the pixels, which textures fill.
 bool has_near_display(const PixelHeader& header);

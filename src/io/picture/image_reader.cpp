@@ -4,7 +4,7 @@
 #include <new>
 #include <sstream>
 
-#include "io/picture/colour_space.h"
+#include "io/picture/color_space.h"
 #include "io/picture/image_input.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -81,7 +81,7 @@ Texture read_texture(const std::filesystem::path& file) {
     return with_memory_error(file.string(), [&] {
         Texture texture = read_pixels(*open_image(file), file.string());
         std::ifstream stream(file, std::ios::binary);
-        texture.colour_tag = find_colour_tag(stream);
+        texture.colour_tag = find_color_tag(stream);
         return texture;
     });
 }
@@ -90,7 +90,7 @@ Texture parse_texture(std::string_view bytes, const std::string& name) {
     return with_memory_error(name, [&] {
         Texture texture = read_pixels(*open_image_bytes(bytes, name), name);
         std::istringstream stream{std::string(bytes)};
-        texture.colour_tag = find_colour_tag(stream);
+        texture.colour_tag = find_color_tag(stream);
         return texture;
     });
 }
@@ -109,7 +109,7 @@ Image read_image(const std::filesystem::path& file) {
         const size_t channel_count = header.channels.size();
         image.pixels.resize(size_t(header.width) * size_t(header.height) * channel_count);
         source->read_floats(int(channel_count), channel_count, image.pixels.data());
-        convert_picture(ColourWay::from_file, image);
+        convert_picture(ColorWay::from_file, image);
         return image;
     });
 }

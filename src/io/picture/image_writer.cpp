@@ -7,7 +7,7 @@
 
 #include "base/suggest.h"
 #include "io/file_system.h"
-#include "io/picture/colour_space.h"
+#include "io/picture/color_space.h"
 #include "io/picture/display_transform.h"
 #include "io/picture/image_coders.h"
 #include "relief/error.h"
@@ -38,7 +38,7 @@ void check_image(const Image& image, const std::filesystem::path& file) {
 }
 
 /// Channels R, G, B, or the first one three times for an image without them.
-std::array<size_t, 3> find_colour_channels(const Image& image) {
+std::array<size_t, 3> find_color_channels(const Image& image) {
     std::array<size_t, 3> result{};
     const std::array<std::string, 3> names = {"R", "G", "B"};
     for (size_t c = 0; c < 3; ++c) {
@@ -48,11 +48,11 @@ std::array<size_t, 3> find_colour_channels(const Image& image) {
     return result;
 }
 
-FillRow<Vec3f> make_colour_rows(const Image& image) {
-    return [&image, channels = find_colour_channels(image)](int y, std::vector<Vec3f>& row) {
+FillRow<Vec3f> make_color_rows(const Image& image) {
+    return [&image, channels = find_color_channels(image)](int y, std::vector<Vec3f>& row) {
         const float* pixel = &image.pixels[size_t(y) * size_t(image.width) * image.channels.size()];
-        for (Vec3f& colour : row) {
-            colour = {pixel[channels[0]], pixel[channels[1]], pixel[channels[2]]};
+        for (Vec3f& color : row) {
+            color = {pixel[channels[0]], pixel[channels[1]], pixel[channels[2]]};
             pixel += image.channels.size();
         }
     };
@@ -63,17 +63,17 @@ class ShownPixel {
   public:
     ShownPixel(const Image& image, const DisplaySettings& settings)
         : settings_(settings),
-          channels_(find_colour_channels(image)),
+          channels_(find_color_channels(image)),
           alpha_channel_(image.find_channel("A")),
           is_over_(settings.is_transparent || settings.background) {}
 
     /// The values of pixel (x, y) of the display window: three, or four for a transparent film. Returns the
     /// byte after them.
     uint8_t* write(const float* pixel, uint32_t x, uint32_t y, uint8_t* byte) const {
-        Vec3f colour{pixel[channels_[0]], pixel[channels_[1]], pixel[channels_[2]]};
+        Vec3f color{pixel[channels_[0]], pixel[channels_[1]], pixel[channels_[2]]};
         const float alpha = is_over_ ? std::clamp(pixel[*alpha_channel_], 0.0f, 1.0f) : 1;
-        if (alpha > 0 && alpha < 1) colour = colour * (1 / alpha);
-        Vec3f shown = show_colour(colour, settings_);
+        if (alpha > 0 && alpha < 1) color = color * (1 / alpha);
+        Vec3f shown = show_color(color, settings_);
         if (settings_.background) shown = shown * alpha + *settings_.background * (1 - alpha);
         const float dither = find_dither(x, y);
         for (const float value : {shown.x, shown.y, shown.z}) byte = write_value(value, dither, byte);
@@ -128,13 +128,13 @@ void write_image(const Image& image, const std::filesystem::path& file) {
     check_image(image, file);
     const std::string extension = get_extension(file);
     std::optional<Image> converted; // to the space that the header names
-    if (extension == ".exr" && image.metadata.contains(kColourSpaceTag))
-        convert_picture(ColourWay::to_file, converted.emplace(image));
+    if (extension == ".exr" && image.metadata.contains(kColorSpaceTag))
+        convert_picture(ColorWay::to_file, converted.emplace(image));
     write_checked(file, [&](CheckedFile& stream) {
         if (extension == ".exr")
             encode_exr(converted ? *converted : image, stream);
         else if (extension == ".hdr")
-            encode_hdr(image.width, image.height, make_colour_rows(image), stream);
+            encode_hdr(image.width, image.height, make_color_rows(image), stream);
         else
             encode_shown_png(image, stream);
     });

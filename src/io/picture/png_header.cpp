@@ -22,7 +22,7 @@ uint64_t read_uint32(const char* bytes) {
 }
 
 /// gAMA holds 100000 times the exponent; that of values left alone is 1.
-bool is_gamma_of_colours(std::istream& stream) {
+bool is_gamma_of_colors(std::istream& stream) {
     constexpr uint64_t kLinear = 100000;
     std::array<char, 4> value{};
     return stream.read(value.data(), 4) && read_uint32(value.data()) != kLinear;
@@ -42,7 +42,7 @@ bool has_oversized_png_chunk(std::istream& stream, uint64_t stream_bytes) {
     return false;
 }
 
-std::string find_png_colour_tag(std::istream& stream) {
+std::string find_png_color_tag(std::istream& stream) {
     std::array<char, 8> head{};
     if (!skip_signature(stream)) return {};
     uint64_t position = 8;
@@ -50,7 +50,7 @@ std::string find_png_colour_tag(std::istream& stream) {
         const std::string_view kind(head.data() + 4, 4);
         if (kind == "IDAT") break; // those chunks stand before the pixels
         if (kind == "sRGB" || kind == "iCCP" || kind == "cHRM") return std::string(kind) + " chunk";
-        if (kind == "gAMA" && is_gamma_of_colours(stream)) return "gAMA chunk";
+        if (kind == "gAMA" && is_gamma_of_colors(stream)) return "gAMA chunk";
         position += 8 + read_uint32(head.data()) + kChecksumBytes;
         stream.seekg(std::streamoff(position));
     }

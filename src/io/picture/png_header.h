@@ -13,6 +13,6 @@ bool has_oversized_png_chunk(std::istream& stream, uint64_t stream_bytes);
 
 /// The chunk of a PNG stream that calls its values colours: "sRGB chunk", or iCCP, cHRM, or gAMA of another
 /// gamma than 1; empty: none, or no PNG. The position moves.
-std::string find_png_colour_tag(std::istream& stream);
+std::string find_png_color_tag(std::istream& stream);
 
 } // namespace relief

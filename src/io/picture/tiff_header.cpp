@@ -35,7 +35,7 @@ class TiffBytes {
 
 } // namespace
 
-std::string find_tiff_colour_tag(std::istream& stream) {
+std::string find_tiff_color_tag(std::istream& stream) {
     constexpr uint32_t kVersion = 42, kIccProfile = 34675;
     TiffBytes bytes(stream);
     if (!bytes.is_good() || bytes.read(2) != kVersion) return {};

@@ -7,7 +7,7 @@
 
 #include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
-#include "io/picture/colour_space.h"
+#include "io/picture/color_space.h"
 #include "io/scene/tile_names.h"
 #include "relief/error.h"
 #include "relief/half.h"
@@ -21,7 +21,7 @@ namespace {
 
 bool is_finite_half(uint16_t bits) { return (bits & 0x7c00) != 0x7c00; }
 
-void decode_colours(Texture& texture) {
+void decode_colors(Texture& texture) {
     const bool is_integer =
         texture.source_type == SampleType::uint8 || texture.source_type == SampleType::uint16;
     if (!is_integer) return;
@@ -148,7 +148,7 @@ std::shared_ptr<const Texture> AssetCache::decode(std::shared_ptr<Texture> textu
     if (channel > 0) move_first(*texture, channel);
     if (use == TextureUse::data) return texture;
     check_finite(*texture, 0);
-    if (use == TextureUse::colour && space.empty()) decode_colours(*texture);
+    if (use == TextureUse::color && space.empty()) decode_colors(*texture);
     if (use != TextureUse::vector) spread_grey(*texture);
     if (!space.empty()) decode_texture(space, *texture);
     if (use == TextureUse::radiance && lift_negatives(*texture))

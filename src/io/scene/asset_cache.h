@@ -22,7 +22,7 @@ namespace relief {
 /// What a texture is for decides what is done to its values: `data` nothing; `colour` decodes integers from
 /// sRGB; `radiance` refuses NaN and infinity and lifts negative values to 0; `vector` refuses NaN and
 /// infinity; `number` as well, and leaves one channel of the texture.
-enum class TextureUse { data, colour, radiance, vector, number };
+enum class TextureUse { data, color, radiance, vector, number };
 
 /// As a channel of a number: that of the colour that the first three are, linear Rec.709.
 inline constexpr uint32_t kLuminanceChannel = 4;
@@ -36,7 +36,7 @@ class AssetCache {
 
     std::filesystem::path resolve(const std::string& file) const;
     /// `channel`, from 0, comes first in the texture; `space` of colours and radiance: as the file holds them
-    /// (io/picture/colour_space.h), empty for sRGB where integers are colours and else linear Rec.709; of
+    /// (io/picture/color_space.h), empty for sRGB where integers are colours and else linear Rec.709; of
     /// numbers the same, empty for values that are taken as they are. Throws
     /// Error{bad_input} as read_texture and decode_texture, and for a channel that the file lacks.
     std::shared_ptr<const Texture> load(const std::string& file, TextureUse use, uint32_t channel = 0,

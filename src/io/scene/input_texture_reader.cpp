@@ -37,7 +37,7 @@ void check_texture_keys(const JsonNode& node, const MaterialInputKind& kind, boo
     else if (!is_own_key)
         node.check_keys(scene_keys::kInputTexture);
     else if (kind.is_color())
-        node.check_keys(scene_keys::kColourTexture);
+        node.check_keys(scene_keys::kColorTexture);
     else
         node.check_keys(scene_keys::kDataTexture);
 }
@@ -63,7 +63,7 @@ InputTexture read_input_texture(const JsonNode& node, const MaterialInputKind& k
     const JsonNode file = is_object ? node.get("file") : node;
     const std::string name = file.as_string();
     texture.is_udim = has_tile_token(name);
-    TextureUse use = kind.is_color() ? TextureUse::colour : TextureUse::number;
+    TextureUse use = kind.is_color() ? TextureUse::color : TextureUse::number;
     if (kind.input == MaterialInput::normal) use = TextureUse::vector;
     uint32_t channel = 0;
     std::string space;

@@ -33,7 +33,7 @@ inline constexpr auto kMaterialLacks =
               "transmission_dispersion_scale", "transmission_dispersion_abbe_number", "thin_film_weight",
               "thin_film_thickness", "thin_film_ior", "geometry_tangent", "geometry_coat_normal",
               "geometry_coat_tangent");
-inline constexpr auto kColourTexture = make_keys("file", "filter", "color_space", "uv_set");
+inline constexpr auto kColorTexture = make_keys("file", "filter", "color_space", "uv_set");
 inline constexpr auto kDataTexture = make_keys("file", "filter", "channel", "uv_set");
 inline constexpr auto kNormalTexture =
     make_keys("file", "filter", "scale", "flip_y", "wrap", "uv_scale", "uv_offset");

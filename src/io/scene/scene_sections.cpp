@@ -69,8 +69,8 @@ FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key
                                       AssetCache& assets) {
     const auto found = node.find(key);
     if (!found || found->is_string()) return {read_texture_key(node, key, use, assets), MapFilter::none};
-    if (use == TextureUse::colour)
-        found->check_keys(scene_keys::kColourTexture);
+    if (use == TextureUse::color)
+        found->check_keys(scene_keys::kColorTexture);
     else if (use == TextureUse::vector)
         found->check_keys(scene_keys::kNormalTexture);
     else
@@ -81,7 +81,7 @@ FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key
     const auto channel = found->find("channel");
     if (channel && read_channel(*channel) == kLuminanceChannel) use = TextureUse::number;
     result.texture = read_texture_key(*found, "file", use, assets, channel ? read_channel(*channel) : 0,
-                                      use == TextureUse::colour ? read_color_space(*found) : std::string());
+                                      use == TextureUse::color ? read_color_space(*found) : std::string());
     return result;
 }
 
@@ -254,7 +254,7 @@ Light read_light(const JsonNode& node, AssetCache& assets) {
     light.type = found->type;
     found->read(node, light);
     read_vec3(node, "color", light.color, 0);
-    light.color_texture = read_texture_key(node, "color_texture", TextureUse::colour, assets);
+    light.color_texture = read_texture_key(node, "color_texture", TextureUse::color, assets);
     if (const auto up = node.find("up"); up && light.type == LightType::disk && !light.color_texture)
         up->fail("turns the texture of a disk, and there is none", "leave it out, or add color_texture");
     read_float(node, "strength", light.strength, 0);
@@ -389,8 +389,8 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
     visit_own_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
         if (&texture == &material.normal_texture) return read_normal_texture(node, assets, material);
         if (const auto found = node.find(key); found && is_placed_texture(*found)) return;
-        const bool is_colour = &texture == &material.base_color_texture;
-        read_filtered_texture(node, key, is_colour ? TextureUse::colour : TextureUse::data, assets)
+        const bool is_color = &texture == &material.base_color_texture;
+        read_filtered_texture(node, key, is_color ? TextureUse::color : TextureUse::data, assets)
             .move_to(texture, filter);
     });
     read_input_textures(node, assets, material);

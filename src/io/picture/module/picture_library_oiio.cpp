@@ -11,7 +11,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "io/picture/module/colour_transform_ocio.h"
+#include "io/picture/module/color_transform_ocio.h"
 #include "io/picture/picture_error.h"
 #include "io/picture/picture_library.h"
 
@@ -172,10 +172,9 @@ class OiioLibrary final : public PictureLibrary {
     std::unique_ptr<PixelSource> open_bytes(std::string_view bytes, const std::string& name) const override {
         return std::make_unique<OiioSource>(name, bytes);
     }
-    std::unique_ptr<ColourTransform> make_aces_display() const override { return make_ocio_aces_display(); }
-    std::unique_ptr<ColourTransform> make_colour_space(const std::string& name,
-                                                       ColourWay way) const override {
-        return make_ocio_colour_space(name, way);
+    std::unique_ptr<ColorTransform> make_aces_display() const override { return make_ocio_aces_display(); }
+    std::unique_ptr<ColorTransform> make_color_space(const std::string& name, ColorWay way) const override {
+        return make_ocio_color_space(name, way);
     }
 };
 

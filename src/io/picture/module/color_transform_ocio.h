@@ -8,9 +8,9 @@
 namespace relief {
 
 /// PictureLibrary::make_aces_display. Throws Error{failed} where the library does not know the transform.
-std::unique_ptr<ColourTransform> make_ocio_aces_display();
+std::unique_ptr<ColorTransform> make_ocio_aces_display();
 
-/// PictureLibrary::make_colour_space.
-std::unique_ptr<ColourTransform> make_ocio_colour_space(const std::string& name, ColourWay way);
+/// PictureLibrary::make_color_space.
+std::unique_ptr<ColorTransform> make_ocio_color_space(const std::string& name, ColorWay way);
 
 } // namespace relief

@@ -11,11 +11,11 @@
 
 namespace relief {
 
-class ColourTransform;
+class ColorTransform;
 
 /// Entry of a picture's header: the space in which its file holds colours; linear Rec.709 where it is
 /// missing.
-inline constexpr const char* kColourSpaceTag = "relief:color_space";
+inline constexpr const char* kColorSpaceTag = "relief:color_space";
 
 /// Spaces that need no configuration, of textures and of pictures. Textures may also be in a colour space of
 /// the OpenColorIO configuration that the environment variable OCIO names.
@@ -35,11 +35,11 @@ Chromaticities find_chromaticities(std::string_view space);
 /// be loaded.
 void decode_texture(const std::string& space, Texture& texture);
 
-enum class ColourWay { to_file, from_file };
+enum class ColorWay { to_file, from_file };
 
 /// Converts the colour channels of a picture between linear Rec.709 and the space that its header names: R,
 /// G, B of the picture and of layers, but for variances and Cryptomatte. Throws Error{bad_input} for a space
 /// that is not one of kPictureSpaces, Error{failed} as decode_texture.
-void convert_picture(ColourWay way, Image& image);
+void convert_picture(ColorWay way, Image& image);
 
 } // namespace relief

@@ -1,4 +1,4 @@
-#include "io/picture/colour_space.h"
+#include "io/picture/color_space.h"
 
 #include <algorithm>
 #include <array>
@@ -29,20 +29,20 @@ template <class Convert> void convert_texels(Texture& texture, const Convert& co
         std::ranges::transform(texture.halves, texture.floats.begin(), half_to_float);
         texture.halves = {};
     }
-    parallel_for("colour_space", texture.floats.size() / 4, 65536, [&](size_t begin, size_t end) {
+    parallel_for("color_space", texture.floats.size() / 4, 65536, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
             float* texel = &texture.floats[4 * k];
-            const Vec3f colour = convert(Vec3f{texel[0], texel[1], texel[2]});
-            texel[0] = colour.x, texel[1] = colour.y, texel[2] = colour.z;
+            const Vec3f color = convert(Vec3f{texel[0], texel[1], texel[2]});
+            texel[0] = color.x, texel[1] = color.y, texel[2] = color.z;
         }
     });
 }
 
-using ColourChannels = std::array<size_t, 3>;
+using ColorChannels = std::array<size_t, 3>;
 
 /// R, G, B of a picture and of its layers.
-std::vector<ColourChannels> find_colour_channels(const Image& image) {
-    std::vector<ColourChannels> found;
+std::vector<ColorChannels> find_color_channels(const Image& image) {
+    std::vector<ColorChannels> found;
     for (const std::string& name : image.channels) {
         if (name != "R" && !name.ends_with(".R")) continue;
         if (name.starts_with("variance") || name.starts_with("Crypto")) continue;
@@ -54,15 +54,15 @@ std::vector<ColourChannels> find_colour_channels(const Image& image) {
     return found;
 }
 
-void convert_pixels(const ColourTransform& transform, Image& image) {
-    const std::vector<ColourChannels> layers = find_colour_channels(image);
+void convert_pixels(const ColorTransform& transform, Image& image) {
+    const std::vector<ColorChannels> layers = find_color_channels(image);
     const size_t stride = image.channels.size();
-    parallel_for("colour_space", image.pixels.size() / stride, 65536, [&](size_t begin, size_t end) {
+    parallel_for("color_space", image.pixels.size() / stride, 65536, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k)
             for (const auto& [r, g, b] : layers) {
                 float* pixel = &image.pixels[k * stride];
-                const Vec3f colour = transform.apply({pixel[r], pixel[g], pixel[b]});
-                pixel[r] = colour.x, pixel[g] = colour.y, pixel[b] = colour.z;
+                const Vec3f color = transform.apply({pixel[r], pixel[g], pixel[b]});
+                pixel[r] = color.x, pixel[g] = color.y, pixel[b] = color.z;
             }
     });
 }
@@ -84,8 +84,8 @@ void decode_texture(const std::string& space, Texture& texture) {
         });
         return;
     }
-    const std::unique_ptr<ColourTransform> transform =
-        get_picture_library("color_space").make_colour_space(space, ColourWay::from_file);
+    const std::unique_ptr<ColorTransform> transform =
+        get_picture_library("color_space").make_color_space(space, ColorWay::from_file);
     if (!transform)
         throw Error(
             ErrorKind::bad_input,
@@ -93,17 +93,17 @@ void decode_texture(const std::string& space, Texture& texture) {
              suggest_word(space, kTextureSpaces) +
                  "; others come from the OpenColorIO configuration that the environment variable OCIO "
                  "names"});
-    convert_texels(texture, [&](const Vec3f& colour) { return transform->apply(colour); });
+    convert_texels(texture, [&](const Vec3f& color) { return transform->apply(color); });
 }
 
-void convert_picture(ColourWay way, Image& image) {
-    const auto entry = image.metadata.find(kColourSpaceTag);
+void convert_picture(ColorWay way, Image& image) {
+    const auto entry = image.metadata.find(kColorSpaceTag);
     if (entry == image.metadata.end() || entry->second == kLinear) return;
     if (!is_one_of(kPictureSpaces, entry->second))
         throw Error(ErrorKind::bad_input,
                     {"no color space of pictures has that name: '" + entry->second + "'", "",
                      suggest_word(entry->second, kPictureSpaces)});
-    convert_pixels(*get_picture_library("color_space").make_colour_space(entry->second, way), image);
+    convert_pixels(*get_picture_library("color_space").make_color_space(entry->second, way), image);
 }
 
 } // namespace relief

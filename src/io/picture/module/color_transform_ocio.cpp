@@ -1,4 +1,4 @@
-#include "io/picture/module/colour_transform_ocio.h"
+#include "io/picture/module/color_transform_ocio.h"
 
 #include <cstdlib>
 
@@ -20,15 +20,15 @@ ocio::TransformRcPtr make_builtin(const char* style,
     return transform;
 }
 
-class OcioTransform final : public ColourTransform {
+class OcioTransform final : public ColorTransform {
   public:
     explicit OcioTransform(const ocio::ConstTransformRcPtr& transform)
         : OcioTransform(ocio::Config::CreateRaw(), transform) {}
     OcioTransform(const ocio::ConstConfigRcPtr& config, const ocio::ConstTransformRcPtr& transform)
         : processor_(config->getProcessor(transform)->getDefaultCPUProcessor()) {}
 
-    Vec3f apply(const Vec3f& colour) const override {
-        float rgb[3] = {colour.x, colour.y, colour.z};
+    Vec3f apply(const Vec3f& color) const override {
+        float rgb[3] = {color.x, color.y, color.z};
         processor_->applyRGB(rgb);
         return {rgb[0], rgb[1], rgb[2]};
     }
@@ -67,7 +67,7 @@ ocio::TransformRcPtr find_to_aces(const std::string& name, const ocio::ConstConf
 
 } // namespace
 
-std::unique_ptr<ColourTransform> make_ocio_colour_space(const std::string& name, ColourWay way) {
+std::unique_ptr<ColorTransform> make_ocio_color_space(const std::string& name, ColorWay way) {
     try {
         const ocio::ConstConfigRcPtr config = find_config(name);
         const ocio::TransformRcPtr to_aces = find_to_aces(name, config);
@@ -75,7 +75,7 @@ std::unique_ptr<ColourTransform> make_ocio_colour_space(const std::string& name,
         const ocio::GroupTransformRcPtr all = ocio::GroupTransform::Create();
         all->appendTransform(to_aces);
         add_aces_to_rec709(*all);
-        if (way == ColourWay::to_file) all->setDirection(ocio::TRANSFORM_DIR_INVERSE);
+        if (way == ColorWay::to_file) all->setDirection(ocio::TRANSFORM_DIR_INVERSE);
         return std::make_unique<OcioTransform>(config ? config : ocio::Config::CreateRaw(), all);
     } catch (const ocio::Exception& error) {
         throw Error(ErrorKind::bad_input,
@@ -84,7 +84,7 @@ std::unique_ptr<ColourTransform> make_ocio_colour_space(const std::string& name,
     }
 }
 
-std::unique_ptr<ColourTransform> make_ocio_aces_display() {
+std::unique_ptr<ColorTransform> make_ocio_aces_display() {
     try {
         const ocio::GroupTransformRcPtr all = ocio::GroupTransform::Create();
         all->appendTransform(

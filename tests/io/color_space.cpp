@@ -1,5 +1,5 @@
 // Textures and pictures in colour spaces other than linear Rec.709.
-#include "io/picture/colour_space.h"
+#include "io/picture/color_space.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -10,7 +10,7 @@
 
 namespace relief {
 
-class ColourSpaces : public FileTest {
+class ColorSpaces : public FileTest {
   protected:
     /// First texel of a float picture in a space, as the base colour of a material.
     Vec3f load(const std::string& file, const std::string& space) const {
@@ -31,7 +31,7 @@ void expect_near(const Vec3f& a, const Vec3f& b, float tolerance) {
     EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-TEST_F(ColourSpaces, textures_become_linear_rec709) {
+TEST_F(ColorSpaces, textures_become_linear_rec709) {
     write_color({1, 0, 0});
     expect_near(load("c.exr", "linear"), {1, 0, 0}, 0);
     // AP1 to Rec.709 with Bradford's adaptation (Academy 2016, TB-2014-004 and ACES 1.0.3).
@@ -45,7 +45,7 @@ TEST_F(ColourSpaces, textures_become_linear_rec709) {
     expect_near(load("c.exr", "acescct"), {0.18f, 0.18f, 0.18f}, 1e-3f);
 }
 
-TEST_F(ColourSpaces, an_explicit_space_holds_for_integers_and_halves_too) {
+TEST_F(ColorSpaces, an_explicit_space_holds_for_integers_and_halves_too) {
     write_pixels<uint8_t>("c.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {51, 51, 51});
     expect_near(load("c.png", "linear"), {0.2f, 0.2f, 0.2f}, 1e-6f);
     expect_near(load("c.png", "auto"), {0.0331048f, 0.0331048f, 0.0331048f}, 1e-6f);
@@ -53,7 +53,7 @@ TEST_F(ColourSpaces, an_explicit_space_holds_for_integers_and_halves_too) {
     expect_near(load("h.exr", "srgb"), {0.2140411f, 0.2140411f, 0.2140411f}, 1e-4f);
 }
 
-TEST_F(ColourSpaces, environments_have_one_as_well) {
+TEST_F(ColorSpaces, environments_have_one_as_well) {
     write_pixels<float>("e.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, {1, 0, 0, 1, 1, 1});
     const Scene scene =
         parse_scene(R"({"environment": {"file": "e.exr", "color_space": "acescg"}})", folder_, "s.json");
@@ -67,7 +67,7 @@ TEST_F(ColourSpaces, environments_have_one_as_well) {
                "is that of a file");
 }
 
-TEST_F(ColourSpaces, spaces_of_a_configuration_are_known) {
+TEST_F(ColorSpaces, spaces_of_a_configuration_are_known) {
     write("config.ocio", R"(ocio_profile_version: 2
 roles: {aces_interchange: aces, default: aces}
 file_rules: [!<Rule> {name: Default, colorspace: aces}]
@@ -109,20 +109,20 @@ Image make_layers() {
     return image;
 }
 
-TEST_F(ColourSpaces, pictures_are_written_in_one_and_read_back_in_linear_rec709) {
+TEST_F(ColorSpaces, pictures_are_written_in_one_and_read_back_in_linear_rec709) {
     for (const char* space : {"acescg", "aces2065-1"}) {
         Image image = make_layers();
-        image.metadata[kColourSpaceTag] = space;
+        image.metadata[kColorSpaceTag] = space;
         write_image(image, folder_ / "p.exr");
         const Texture stored = read_texture(folder_ / "p.exr");
         EXPECT_GT(std::fabs(stored.floats.at(0) - image.pixels[0]), 0.005f) << "not converted: " << space;
         const Image read = read_image(folder_ / "p.exr");
-        EXPECT_EQ(read.metadata.at(kColourSpaceTag), space);
+        EXPECT_EQ(read.metadata.at(kColorSpaceTag), space);
         ASSERT_EQ(read.channels.size(), image.channels.size());
         for (size_t c = 0; c < image.channels.size(); ++c) {
             const size_t there = read.find_channel(image.channels[c]).value();
-            const bool is_colour = c < 3 || (c > 3 && c < 7);
-            EXPECT_NEAR(read.pixels[there], image.pixels[c], is_colour ? 1e-5f : 0) << image.channels[c];
+            const bool is_color = c < 3 || (c > 3 && c < 7);
+            EXPECT_NEAR(read.pixels[there], image.pixels[c], is_color ? 1e-5f : 0) << image.channels[c];
         }
         const auto input = OIIO::ImageInput::open((folder_ / "p.exr").string());
         float xy[8] = {};
@@ -133,9 +133,9 @@ TEST_F(ColourSpaces, pictures_are_written_in_one_and_read_back_in_linear_rec709)
     }
 }
 
-TEST_F(ColourSpaces, a_file_in_an_unknown_one_is_refused) {
+TEST_F(ColorSpaces, a_file_in_an_unknown_one_is_refused) {
     Image image = make_layers();
-    image.metadata[kColourSpaceTag] = "acecg";
+    image.metadata[kColorSpaceTag] = "acecg";
     EXPECT_HAS(message_of([&] { write_image(image, folder_ / "p.exr"); }), "did you mean 'acescg'?");
 }
 
