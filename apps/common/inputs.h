@@ -12,7 +12,7 @@ namespace relief::cli {
 
 enum class FileKind { map, mesh, scene };
 
-/// By its suffix.
+/// By its suffix. What is neither mesh nor scene is taken for a map, of which its reader says what is wrong.
 FileKind get_kind(const std::filesystem::path& file);
 
 /// Files that a scene was read from, as far as known: scene file, meshes, maps, textures.

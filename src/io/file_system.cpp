@@ -69,7 +69,7 @@ fs::path find_link_end(fs::path file) {
     return file;
 }
 
-std::string get_extension(const fs::path& file) {
+std::string get_lower_extension(const fs::path& file) {
     std::string extension = file.extension().string();
     for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
     return extension;

@@ -7,7 +7,7 @@
 namespace relief {
 
 /// Lower-case extension with its dot: ".exr".
-std::string get_extension(const std::filesystem::path& file);
+std::string get_lower_extension(const std::filesystem::path& file);
 
 /// Throws bad_input unless the path names a regular file; the hint names a similar file of the folder.
 void require_file(const std::filesystem::path& file);

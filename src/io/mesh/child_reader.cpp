@@ -109,7 +109,7 @@ class Child {
 };
 
 std::string name_reader(const std::filesystem::path& file) {
-    std::string kind = get_extension(file).substr(1);
+    std::string kind = get_lower_extension(file).substr(1);
     for (char& c : kind)
         if (c >= 'a' && c <= 'z') c = char(c - 'a' + 'A');
     return fmt::format("the {} reader", kind);

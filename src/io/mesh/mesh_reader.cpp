@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 5> kMeshExtensions = {".obj", ".ply", ".g
 
 Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options,
                std::vector<std::string>& warnings) {
-    const std::string extension = get_extension(file), name = file.string();
+    const std::string extension = get_lower_extension(file), name = file.string();
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     if (!options.animation.empty() && !is_gltf)
         throw Error(ErrorKind::bad_input,
@@ -49,7 +49,7 @@ Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options
 } // namespace
 
 bool is_mesh_file(const std::filesystem::path& file) {
-    const std::string extension = get_extension(file);
+    const std::string extension = get_lower_extension(file);
     return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) != kMeshExtensions.end();
 }
 
@@ -63,7 +63,7 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
     require_file(file);
     refuse_foreign_file(file);
     if (!is_mesh_file(file)) {
-        const std::string extension = get_extension(file);
+        const std::string extension = get_lower_extension(file);
         throw Error(ErrorKind::bad_input, {fmt::format("unknown kind of mesh '{}'", extension), file.string(),
                                            suggest_word(extension, kMeshExtensions)});
     }

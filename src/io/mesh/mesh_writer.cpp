@@ -114,7 +114,7 @@ std::string format_ply(const Mesh& mesh, const ProgressFunction& on_progress) {
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& file, const ProgressFunction& on_progress) {
     validate_mesh(mesh);
-    const std::string extension = get_extension(file);
+    const std::string extension = get_lower_extension(file);
     const ProgressFunction formatting = make_part(on_progress, 0, 0.9);
     if (extension == ".obj")
         write_text_file(file, format_obj(mesh, formatting));

@@ -58,7 +58,7 @@ void check_size(const PixelHeader& header, const std::string& name, uint64_t fil
 }
 
 void check_extension(const std::string& name) {
-    const std::string extension = get_extension(name);
+    const std::string extension = get_lower_extension(name);
     if (std::ranges::find(kExtensions, extension) == kExtensions.end())
         throw Error(ErrorKind::bad_input, {fmt::format("unknown kind of image '{}'", extension), name,
                                            suggest_word(extension, kExtensions)});
@@ -115,7 +115,7 @@ std::unique_ptr<PixelSource> open(const OpenStream& open_stream, const std::stri
 } // namespace
 
 bool is_picture_name(const std::filesystem::path& file) {
-    return std::ranges::find(kExtensions, get_extension(file.string())) != kExtensions.end();
+    return std::ranges::find(kExtensions, get_lower_extension(file.string())) != kExtensions.end();
 }
 
 bool has_near_display(const PixelHeader& header) {

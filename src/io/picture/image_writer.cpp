@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kWritable = {".exr", ".png", ".hdr"};
 
 void check_output_extension(const std::filesystem::path& file) {
-    const std::string extension = get_extension(file);
+    const std::string extension = get_lower_extension(file);
     if (std::find(kWritable.begin(), kWritable.end(), extension) != kWritable.end()) return;
     std::error_code code;
     const bool is_folder = std::filesystem::is_directory(file, code);
@@ -126,7 +126,7 @@ void encode_shown_png(const Image& image, CheckedFile& stream) {
 void write_image(const Image& image, const std::filesystem::path& file) {
     check_output_extension(file);
     check_image(image, file);
-    const std::string extension = get_extension(file);
+    const std::string extension = get_lower_extension(file);
     std::optional<Image> converted; // to the space that the header names
     if (extension == ".exr" && image.metadata.contains(kColorSpaceTag))
         convert_picture(ColorWay::to_file, converted.emplace(image));

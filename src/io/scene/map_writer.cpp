@@ -17,7 +17,7 @@ namespace relief {
 namespace {
 
 void check_kind(const Displacement& map, const std::filesystem::path& file, MapSamples samples) {
-    const std::string extension = get_extension(file);
+    const std::string extension = get_lower_extension(file);
     const auto refuse = [&](const std::string& message, const char* hint) {
         throw Error(ErrorKind::usage, {message, file.string(), hint});
     };

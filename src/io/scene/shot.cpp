@@ -18,7 +18,7 @@ namespace {
 
 /// Adds the files that a mesh file reads beside itself. What is wrong with it, reading it tells.
 void add_buffers(const std::filesystem::path& file, std::vector<std::filesystem::path>& files) {
-    if (get_extension(file) != ".gltf") return;
+    if (get_lower_extension(file) != ".gltf") return;
     const Json root = Json::parse(read_file_bytes(file), nullptr, false);
     if (!root.is_object() || !root.contains("buffers") || !root["buffers"].is_array()) return;
     for (const Json& buffer : root["buffers"])
