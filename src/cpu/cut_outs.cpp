@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cpu/shading/material_inputs.h"
+#include "cpu/shading/input_look_up.h"
 #include "formulas/glass_vertex.h"
 #include "prepare/prepared_scene.h"
 

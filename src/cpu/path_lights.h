@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cpu/shading/lights.h"
-#include "formulas/light_layers.h"
+#include "formulas/light_kinds.h"
 #include "image/light_layers.h"
 #include "math/vec.h"
 #include "prepare/light_groups.h"

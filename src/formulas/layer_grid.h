@@ -4,7 +4,7 @@
 // the rows around: layer_block.h.
 #ifndef RELIEF_LAYER_GRID_H
 #define RELIEF_LAYER_GRID_H
-#include "formulas/material_inputs.h"
+#include "formulas/input_numbers.h"
 
 #include "formulas/begin.h"
 
@@ -13,7 +13,7 @@ const uint kMaxLayerAxes = 4u;
 /// Without axes and with one row of fuzz: a block with one row.
 struct LayerGrid {
     uint axis_count;
-    uint place[kMaxLayerAxes]; ///< of the numbers (material_inputs.h)
+    uint place[kMaxLayerAxes]; ///< of the numbers (input_numbers.h)
     uint stride[kMaxLayerAxes];
     float lower[kMaxLayerAxes]; ///< of the first node
     float scale[kMaxLayerAxes]; ///< nodes a unit

@@ -1,4 +1,4 @@
-// Layers that share out the light of a picture: over the kinds of formulas/light_layers.h, which add up to
+// Layers that share out the light of a picture: over the kinds of formulas/light_kinds.h, which add up to
 // its colour, and over groups of lights, which do so where all groups are asked for. Guides of a denoiser go
 // with them, as they too are of whole paths.
 #pragma once

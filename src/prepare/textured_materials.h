@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "formulas/material_inputs.h"
+#include "formulas/input_numbers.h"
 #include "math/vec.h"
 #include "relief/scene.h"
 

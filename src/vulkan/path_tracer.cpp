@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/stop_request.h"
 #include "base/timer.h"
-#include "formulas/light_layers.h"
+#include "formulas/light_kinds.h"
 #include "formulas/path.h"
 #include "formulas/pixel_order.h"
 #include "prepare/bounce_lod.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cpu/shading/material_inputs.h"
+#include "cpu/shading/input_look_up.h"
 #include "prepare/material_layers.h"
 #include "scene/material_inputs.h"
 #include "support/shading_scenes.h"

@@ -11,7 +11,7 @@
 #include "lab/walks/trail.h"
 #include "support/dense_heap.h"
 #include "support/ray_cases.h"
-#include "support/walks.h"
+#include "support/walks_from_root.h"
 
 namespace relief {
 namespace {

@@ -9,7 +9,7 @@
 #include "formulas/object_ray.h"
 #include "formulas/tree.h"
 #include "support/box_sets.h"
-#include "support/walks.h"
+#include "support/walks_from_root.h"
 
 namespace relief {
 namespace {

@@ -6,7 +6,7 @@
 #include "lab/walks/trail.h"
 #include "support/dense_heap.h"
 #include "support/synthetic_trees.h"
-#include "support/walks.h"
+#include "support/walks_from_root.h"
 
 namespace relief {
 namespace {

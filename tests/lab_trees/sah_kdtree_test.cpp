@@ -8,7 +8,7 @@
 #include "formulas/tree.h"
 #include "support/ray_cases.h"
 #include "support/tree_checks.h"
-#include "support/walks.h"
+#include "support/walks_from_root.h"
 
 namespace relief {
 namespace {

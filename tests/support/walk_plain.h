@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "support/walks.h"
+#include "support/walks_from_root.h"
 
 namespace relief {
 

@@ -1,5 +1,5 @@
 #include "cpu/shading/lights.h"
-#include "cpu/shading/material_inputs.h"
+#include "cpu/shading/input_look_up.h"
 #include "formulas/constants.h"
 #include "formulas/glass.h"
 #include "formulas/light.h"

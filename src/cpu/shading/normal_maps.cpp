@@ -1,6 +1,6 @@
 #include "cpu/shading/normal_maps.h"
 
-#include "cpu/shading/material_inputs.h"
+#include "cpu/shading/input_look_up.h"
 #include "formulas/normal_map.h"
 #include "surface/mesh/corner_tangents.h"
 

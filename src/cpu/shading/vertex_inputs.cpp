@@ -1,6 +1,6 @@
 #include "cpu/shading/vertex_inputs.h"
 
-#include "cpu/shading/material_inputs.h"
+#include "cpu/shading/input_look_up.h"
 
 namespace relief::cpu {
 

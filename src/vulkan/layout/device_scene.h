@@ -3,9 +3,9 @@
 #ifndef RELIEF_DEVICE_SCENE_H
 #define RELIEF_DEVICE_SCENE_H
 #include "formulas/glass_parameters.h"
+#include "formulas/input_numbers.h"
 #include "formulas/layer_grid.h"
 #include "formulas/layer_parameters.h"
-#include "formulas/material_inputs.h"
 
 #include "formulas/begin.h"
 

@@ -4,7 +4,7 @@
 #include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/textures.glsl"
 #include "vulkan/shaders/texture_place.glsl"
-#include "vulkan/shaders/material_inputs.glsl"
+#include "vulkan/shaders/input_look_up.glsl"
 
 layout(scalar, push_constant) uniform Push { CutOutPush push; };
 

@@ -7,7 +7,7 @@
 #include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/light_sums.glsl"
 #include "vulkan/shaders/terminator.glsl"
-#include "vulkan/shaders/material_inputs.glsl"
+#include "vulkan/shaders/input_look_up.glsl"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 

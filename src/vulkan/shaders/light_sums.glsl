@@ -5,7 +5,7 @@
 #define RELIEF_LIGHT_SUMS_GLSL
 
 #include "vulkan/shaders/scene.glsl"
-#include "formulas/light_layers.h"
+#include "formulas/light_kinds.h"
 #include "vulkan/layout/device_paths.h"
 
 layout(constant_id = kLightKindsConstant) const uint kLightKinds = 0u;

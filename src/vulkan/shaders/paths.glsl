@@ -13,7 +13,7 @@
 #include "formulas/facets.h"
 #include "formulas/bsdf.h"
 #include "formulas/layered_bsdf.h"
-#include "formulas/light_layers.h"
+#include "formulas/light_kinds.h"
 #include "formulas/lobe_shares.h"
 #include "formulas/glass.h"
 #include "formulas/glass_bsdf.h"

@@ -3,7 +3,7 @@
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/textures.glsl"
 #include "vulkan/shaders/texture_place.glsl"
-#include "vulkan/shaders/material_inputs.glsl"
+#include "vulkan/shaders/input_look_up.glsl"
 #include "vulkan/shaders/shading_normal.glsl"
 #include "formulas/normal_map.h"
 

@@ -1,7 +1,7 @@
 // Kinds of light by what it did at the first surface that the camera sees: layers of a picture that add up to
 // its colour.
-#ifndef RELIEF_LIGHT_LAYERS_H
-#define RELIEF_LIGHT_LAYERS_H
+#ifndef RELIEF_LIGHT_KINDS_H
+#define RELIEF_LIGHT_KINDS_H
 #include "formulas/begin.h"
 
 /// Ways in which the first surface scatters light; each has two kinds, direct and indirect.

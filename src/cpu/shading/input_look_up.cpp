@@ -1,4 +1,4 @@
-#include "cpu/shading/material_inputs.h"
+#include "cpu/shading/input_look_up.h"
 
 #include <optional>
 

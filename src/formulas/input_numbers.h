@@ -1,7 +1,7 @@
 // What textures make of the numbers of a material at one point: the numbers as words, so that a table of
 // textures can name its targets, and what follows from them for layers and glass.
-#ifndef RELIEF_MATERIAL_INPUTS_H
-#define RELIEF_MATERIAL_INPUTS_H
+#ifndef RELIEF_INPUT_NUMBERS_H
+#define RELIEF_INPUT_NUMBERS_H
 #include "formulas/glass_parameters.h"
 #include "formulas/layer_parameters.h"
 #include "formulas/power.h"

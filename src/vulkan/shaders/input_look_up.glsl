@@ -1,7 +1,7 @@
-// Textures of the inputs of materials: cpu/shading/material_inputs.cpp. What they make of the numbers at a
+// Textures of the inputs of materials: cpu/shading/input_look_up.cpp. What they make of the numbers at a
 // vertex lies behind the surface points. Nothing is left of all this where kHasInputTextures is 0.
-#ifndef RELIEF_MATERIAL_INPUTS_GLSL
-#define RELIEF_MATERIAL_INPUTS_GLSL
+#ifndef RELIEF_INPUT_LOOK_UP_GLSL
+#define RELIEF_INPUT_LOOK_UP_GLSL
 
 #include "vulkan/shaders/ggx_table.glsl"
 #include "vulkan/shaders/textures.glsl"
