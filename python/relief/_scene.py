@@ -15,7 +15,7 @@ from ._arrays import Array, as_path, as_texels, is_array, to_numpy
 from ._errors import Error
 from ._mesh import Mesh
 from ._parts import Camera, Displacement, Environment, Light, Material
-from ._save import is_moving, put_motion
+from ._save import is_moving, names_file, put_motion
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -23,8 +23,6 @@ SECTIONS = ("version", "render", "camera", "environment", "materials", "displace
 NAMED_SECTIONS = ("materials", "displacements", "meshes")
 FRAMES = (-1e6, 1e6)
 MAX_PICTURE_SIZE = 65536  # pixels of a side
-# Keys that hold the name of a picture, or an object with one.
-PICTURE_KEYS = re.compile(r"^(file|.*_texture)$")
 
 
 class _Collector:
@@ -57,7 +55,7 @@ class _Collector:
             return value
         name = self.name_picture(value, place)
         if name is not None:
-            return name if PICTURE_KEYS.match(key) else {"file": name}
+            return name if names_file(key) else {"file": name}
         if isinstance(value, Mapping):
             return {str(k): self.convert(v, f"{place}.{k}", str(k)) for k, v in value.items() if v is not None}
         if isinstance(value, os.PathLike):

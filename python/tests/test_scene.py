@@ -92,6 +92,17 @@ class SceneTest(unittest.TestCase):
             scene.save(self.folder / "saved")
             self.expect_saved_frames(scene, (1, 2), f"{key}: {value}")
 
+    def test_normal_maps_are_arrays_under_both_names(self):
+        normals = np.random.default_rng(1).uniform(0.3, 1, (8, 8, 3)).astype(np.float32)
+        pictures = []
+        for keys in ({}, {"normal_texture": normals}, {"geometry_normal": normals}, {"geometry_normal": {"file": normals}}):
+            scene = scenes.make_scene()
+            scene.materials["clay"] = relief.Material(keys)
+            pictures.append(self.render(scene))
+        self.assertFalse(np.array_equal(pictures[0], pictures[1]))
+        for picture in pictures[2:]:
+            np.testing.assert_array_equal(picture, pictures[1])
+
     def test_comments_and_files_of_the_scene_are_read(self):
         scenes.make_scene().save(self.folder)
         file = self.folder / "scene.json"
