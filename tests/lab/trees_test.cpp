@@ -3,12 +3,14 @@
 #include "lab/trees.h"
 
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "formulas/object_ray.h"
 #include "lab/scenes/structure_scenes.h"
+#include "lab/tree_workshop.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -95,6 +97,15 @@ TEST_F(MeshTreesTest, rays_that_are_no_numbers_hit_nothing) {
                 trees_.cast(query, {rays_, hits_, {}});
                 expect_hits(query, std::string(tree_name(kind)) + ", " + traversal_name(traversal));
             }
+    }
+}
+
+/// As of a traversal that has been added to tree_traversals() alone.
+TEST_F(MeshTreesTest, no_walk_takes_the_place_of_one_that_is_not_there) {
+    const std::unique_ptr<TreeWorkshop> workshop = make_cpu_tree_workshop(make_soup(scene_.meshes[0]));
+    for (const TreeKind kind : {TreeKind::sah, TreeKind::heap, TreeKind::kdtree}) {
+        workshop->build(kind, 0);
+        EXPECT_THROW(workshop->cast({TraversalKind::wide}, {rays_, hits_, {}}), Error) << tree_name(kind);
     }
 }
 

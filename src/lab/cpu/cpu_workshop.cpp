@@ -5,6 +5,8 @@
 #include <mutex>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -12,6 +14,7 @@
 #include "lab/walks/trail.h"
 #include "lab/walks/walks.h"
 #include "relief/error.h"
+#include "relief/traversal.h"
 
 namespace relief::cpu {
 
@@ -137,13 +140,16 @@ class Walks {
     }
 
   private:
-    /// The one of these that the query names; the first where it names none.
+    /// The one of these that the query names. Another one in its place would be measured under its name.
     template <TraversalKind kFirst, TraversalKind... kOthers, class View>
     TreeCast run(const View& view) const {
+        if (query_.traversal == kFirst) return Caster<kFirst, View>(soup_, view, query_, data_).run();
         if constexpr (sizeof...(kOthers) > 0)
-            if (query_.traversal != kFirst && ((query_.traversal == kOthers) || ...))
-                return run<kOthers...>(view);
-        return Caster<kFirst, View>(soup_, view, query_, data_).run();
+            return run<kOthers...>(view);
+        else
+            throw Error(ErrorKind::failed,
+                        {fmt::format("there is no walk {} of this tree", traversal_name(query_.traversal)),
+                         "trees over a mesh", ""});
     }
     template <class View> TreeCast run_trail(const View& view) const {
         return run<TraversalKind::pair_trail, TraversalKind::trail>(view);
