@@ -68,7 +68,9 @@ void check_extension(const std::string& name) {
 void check_start(std::istream& stream, const std::string& name) {
     constexpr std::array<std::string_view, 6> kStarts = {"\x76\x2f\x31\x01", "II",       "MM",
                                                          "\x89PNG",          "\xff\xd8", "#?"};
-    std::string start(4, '\0');
+    constexpr size_t kLongest =
+        std::ranges::max(kStarts, {}, [](std::string_view s) { return s.size(); }).size();
+    std::string start(kLongest, '\0');
     stream.read(start.data(), std::streamsize(start.size()));
     start.resize(size_t(stream.gcount()));
     if (std::ranges::none_of(kStarts, [&](std::string_view known) { return start.starts_with(known); }))
