@@ -37,7 +37,8 @@ struct TreeKey {
     friend bool operator==(const TreeKey&, const TreeKey&) = default;
 };
 
-/// Common head of the cached objects; `reused` is set by look-ups and cleared by the eviction's clock hand.
+/// Common head of the cached objects; `is_recent` is set by look-ups and cleared by the eviction's clock
+/// hand.
 struct alignas(64) CachedTree {
     TreeKey key;
     uint32_t byte_count = 0;

@@ -29,7 +29,7 @@ using cpu::TraceHit;
 using cpu::TraceRay;
 
 /// What a walk reads.
-struct WalkView {
+struct WalkScene {
     const SceneView& scene;
     const WalkTrees& trees;
     const PrimitiveKernels& primitive;
@@ -59,7 +59,7 @@ template <TraversalKind kTraversal, class Width> class RayWalk {
     using Key = Width;
 
     /// `visit`: one of view.primitive.
-    RayWalk(const WalkView& view, TraceContext& context, const TraceRay& world,
+    RayWalk(const WalkScene& view, TraceContext& context, const TraceRay& world,
             PrimitiveKernels::Function visit)
         : view_(view),
           context_(context),
@@ -217,7 +217,7 @@ template <TraversalKind kTraversal, class Width> class RayWalk {
         return true;
     }
 
-    const WalkView& view_;
+    const WalkScene& view_;
     TraceContext& context_;
     const TraceRay& world_;
     const PrimitiveKernels::Function visit_;
@@ -241,7 +241,7 @@ template <TraversalKind kTraversal, class Width = uint> class NamedWalk final : 
 
     void closest_hits(const SceneView& scene, const PrimitiveKernels& primitive, TraceContext& context,
                       const TraceRay* rays, TraceHit* hits, size_t count) const override {
-        const WalkView view{scene, trees_, primitive};
+        const WalkScene view{scene, trees_, primitive};
         for (size_t k = 0; k < count; ++k) {
             hits[k] = {};
             trace(view, context, k, rays[k], primitive.closest, hits[k]);
@@ -251,7 +251,7 @@ template <TraversalKind kTraversal, class Width = uint> class NamedWalk final : 
 
     void any_hits(const SceneView& scene, const PrimitiveKernels& primitive, TraceContext& context,
                   const TraceRay* rays, uint8_t* occluded, size_t count) const override {
-        const WalkView view{scene, trees_, primitive};
+        const WalkScene view{scene, trees_, primitive};
         for (size_t k = 0; k < count; ++k) {
             TraceHit best;
             occluded[k] = trace(view, context, k, rays[k], primitive.any, best);
@@ -262,7 +262,7 @@ template <TraversalKind kTraversal, class Width = uint> class NamedWalk final : 
 
   private:
     /// Ray `k` of a batch.
-    static bool trace(const WalkView& view, TraceContext& context, size_t k, const TraceRay& ray,
+    static bool trace(const WalkScene& view, TraceContext& context, size_t k, const TraceRay& ray,
                       PrimitiveKernels::Function visit, TraceHit& best) {
         if (k % 16 == 0) view.scene.cache->refresh(context);
         return can_hit(ray) && RayWalk<kTraversal, Width>(view, context, ray, visit).run(best);

@@ -1,5 +1,5 @@
-// The walks of lab/walks/traverse_*.h over the trees of this folder: the reference for the kernels of a
-// device, and what the CPU runs when a traversal is named.
+// The walks of lab/walks/traverse_*.h over one tree alone, of lab/trees/ or with links: for `relief bench
+// paper2`, and the reference for kernels. Scenes have walks of their own: lab/cpu/scene_walks.cpp.
 //   closest_hit_from<TraversalKind::trail>(make_walk_view(heap), start, ray, leaf);
 #pragma once
 

@@ -11,7 +11,7 @@ layout(scalar, push_constant) uniform Push { CutOutPush push; };
 #include "vulkan/shaders/met_lights.glsl"
 
 /// The same of a material whose inputs have textures: of opacity and metallic so far.
-vec2 apply_inputs(HitData hit, vec2 numbers_before, inout MaterialData material) {
+vec2 apply_wall_inputs(HitData hit, vec2 numbers_before, inout MaterialData material) {
     MaterialInputData inputs = material_inputs[material.inputs];
     inputs.numbers.word[kInputOpacity] = numbers_before.x;
     inputs.numbers.word[kInputMetallic] = numbers_before.y;
@@ -21,7 +21,7 @@ vec2 apply_inputs(HitData hit, vec2 numbers_before, inout MaterialData material)
 }
 
 /// Opacity, and metallic where clear walls ask for it; of these their textures change the glass as well.
-vec2 find_opacity(HitData hit, inout MaterialData material) {
+vec2 find_wall_numbers(HitData hit, inout MaterialData material) {
     InstanceData instance = instances[hit.instance];
     uint indices[2] = {material.opacity_texture, kHasGlass != 0u ? material.metallic_texture : kNone};
     vec2 factors = vec2(1.0);
@@ -33,7 +33,7 @@ vec2 find_opacity(HitData hit, inout MaterialData material) {
             if (indices[k] != kNone) factors[k] = fetch_texture(indices[k], uv).x;
     }
     vec2 found = clamp(vec2(material.opacity, material.metallic) * factors, 0.0, 1.0);
-    return has_input_textures(material) ? apply_inputs(hit, found, material) : found;
+    return has_input_textures(material) ? apply_wall_inputs(hit, found, material) : found;
 }
 
 /// Cosine of a ray to the geometric normal.
@@ -59,7 +59,7 @@ bool passes(uint path_index, uint ray_index, HitData hit) {
     if (!is_hit(hit)) return false;
     MaterialData material = materials[instances[hit.instance].material];
     bool is_wall = kHasGlass != 0u && material.has_glass != 0u && material.glass.kind == kClearWall;
-    vec2 found = find_opacity(hit, material);
+    vec2 found = find_wall_numbers(hit, material);
     float u = draw_cut_out(paths[path_index].pixel_seed, push.sample_index, push.depth, push.is_shadow, push.round);
     if (!is_wall) return u >= found.x;
     vec3 left = pass_clear_wall(material.glass, found.y, found.x, find_cosine(ray_index, hit));

@@ -107,13 +107,13 @@ VertexMaterial load_vertex_material(uint index, uint capacity, uint path_index) 
         material.tangent = load_point_tangent(capacity, path_index);
     if (kHasInputTextures == 0u || material.numbers.inputs == kNone) return material;
     MaterialInputData inputs = vertex_inputs[material.numbers.inputs];
-    InputNumbers numbers = point_numbers[find_point_numbers(capacity, path_index)];
-    material.numbers.emission = get_input_color(numbers, kInputEmission);
-    material.numbers.glass = set_glass_inputs(material.numbers.glass, numbers, inputs.constants);
+    InputNumbers textured = point_numbers[find_point_numbers(capacity, path_index)];
+    material.numbers.emission = get_input_color(textured, kInputEmission);
+    material.numbers.glass = set_glass_inputs(material.numbers.glass, textured, inputs.constants);
     if (kHasLayers == 0u || material.numbers.has_layers == 0u) return material;
-    LayerParameters layers = set_layer_inputs(material.numbers.layers, numbers, inputs.constants);
+    LayerParameters layers = set_layer_inputs(material.numbers.layers, textured, inputs.constants);
     material.table.is_block = true;
-    material.table.place = place_layers(inputs.grid, layers.first_entry, numbers);
+    material.table.place = place_layers(inputs.grid, layers.first_entry, textured);
     if (kHasAnisotropy == 0u) material.table.place.azimuth_count = 1u;
     uint average = find_block_average(material.table.place.azimuth_count);
     layers.fuzz_scale = read_layer_entry(material.table, average + 1u).y;
