@@ -101,7 +101,7 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     """Renders a Scene, a Mesh, or the file of a scene or mesh. Without the GIL: other threads of Python go on.
 
     size: width and height, pixels; (1280, 720) unless the scene says another. spp: samples a pixel, 64. bounces: path
-    length, 4. seed: 0. engine: "cpu" or "vulkan". threads: 0, all cores. layers: of depth, N, Ng, P, albedo, uv, id, ...
+    length, 4. seed: 0. engine: "cpu" or "vulkan". threads: 0, all cores. layers: names as of `relief render --layers`.
     crop: x0, y0, x1, y1, half open. background: linear (r, g, b) behind the objects, or "transparent".
     noise: no more samples where the error is below this share of the brightness. time_limit: seconds.
     level: "auto", or 2^level cells a side of each patch. pixel_error: size of cells aimed at, pixels.
