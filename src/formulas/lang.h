@@ -4,7 +4,7 @@
 #ifndef RELIEF_LANG_H
 #define RELIEF_LANG_H
 #define FN
-#define In(Type) Type
+#define In(Type) const Type
 #define EXACT precise
 #define Float float
 #define Bool bool

@@ -8,14 +8,14 @@ layout(scalar, push_constant) uniform Push { PathPush push; };
 #include "vulkan/shaders/met_lights.glsl"
 #include "formulas/guides.h"
 
-void see_background(uint path_index, vec3 light, uint group) {
+void see_background(const uint path_index, const vec3 light, const uint group) {
     paths[path_index].radiance += light;
     add_to_kind(push.capacity, path_index, kKindBackground, light);
     add_to_group(push.capacity, path_index, group, light);
 }
 
 /// The environment along a bounce ray that leaves the scene.
-LightSeen look_behind(vec3 direction, float distance) {
+LightSeen look_behind(const vec3 direction, const float distance) {
     LightSeen behind = {vec3(0.0), 0.0, distance};
     if (distance < make_infinity() || push.has_environment == 0u) return behind;
     behind.radiance = environment_radiance(push.environment, direction);
@@ -24,14 +24,14 @@ LightSeen look_behind(vec3 direction, float distance) {
 }
 
 /// What is behind all surfaces has its colour for an albedo; seen in a mirror it faces the path.
-void note_sky(uint path_index, vec3 direction, vec3 light) {
+void note_sky(const uint path_index, const vec3 direction, const vec3 light) {
     if (!looks_for_guides(push.capacity, path_index, push.depth)) return;
     add_guides(push.capacity, path_index, find_guide_albedo(paths[path_index].throughput, light),
                push.depth > 0u ? -direction : vec3(0.0));
 }
 
 /// That a camera ray sees.
-vec3 find_background(vec3 direction) {
+vec3 find_background(const vec3 direction) {
     if (push.has_background != 0u) return push.background;
     return push.has_environment != 0u ? environment_radiance(push.environment, direction) : vec3(0.0);
 }

@@ -56,7 +56,7 @@ struct BuildJob {
 
 /// The job of a tree with pairs in this round; its first pair determines the instance. A group that has one job knows
 /// that all that follows from it is the same for all lanes.
-BuildJob make_build_job(uint tree, uint place, uint patch_count, uint pool_capacity) {
+BuildJob make_build_job(uint tree, const uint place, const uint patch_count, const uint pool_capacity) {
     BuildJob job;
     job.is_real = true;
     job.place = place;
@@ -85,14 +85,14 @@ BuildJob make_build_job(uint tree, uint place, uint patch_count, uint pool_capac
     return job;
 }
 
-uint find_vertex(BuildJob job, uint i, uint j) { return j * ((1u << job.level) + 1u) + i; }
+uint find_vertex(const BuildJob job, const uint i, const uint j) { return j * ((1u << job.level) + 1u) + i; }
 
-vec3 read_vertex(BuildJob job, uint i, uint j) {
+vec3 read_vertex(const BuildJob job, const uint i, const uint j) {
     uint word = 3u * (job.place * kSide * kSide + find_vertex(job, i, j));
     return vec3(shared_vertices[word], shared_vertices[word + 1u], shared_vertices[word + 2u]);
 }
 
-void write_vertex(BuildJob job, uint i, uint j, vec3 p) {
+void write_vertex(const BuildJob job, const uint i, const uint j, const vec3 p) {
     uint vertex = find_vertex(job, i, j);
     uint word = 3u * (job.place * kSide * kSide + vertex);
     uint pool_word = job.base + first_vertex_word(job.level) + 3u * vertex;
@@ -102,13 +102,13 @@ void write_vertex(BuildJob job, uint i, uint j, vec3 p) {
     }
 }
 
-void reset_bounds(uint place, uint lane) {
+void reset_bounds(const uint place, const uint lane) {
     for (uint k = lane; k < 6u; k += kLanes) shared_bounds[6u * place + k] = k < 3u ? 0xffffffffu : 0u;
 }
 
-uint slot_word(BuildJob job, uint slot) { return job.place * kWords + slot * kSlotWords; }
+uint slot_word(const BuildJob job, const uint slot) { return job.place * kWords + slot * kSlotWords; }
 
-void share_vertex(BuildJob job, uint slot, VertexData data) {
+void share_vertex(const BuildJob job, const uint slot, const VertexData data) {
     uint word = slot_word(job, slot);
     for (uint k = 0u; k < 3u; ++k) {
         shared_words[word + kPositionWord + k] = floatBitsToUint(data.position[k]);
@@ -122,7 +122,7 @@ void share_vertex(BuildJob job, uint slot, VertexData data) {
 }
 
 /// The vertices that samples are blended from.
-void share_patch(BuildJob job, uint lane) {
+void share_patch(const BuildJob job, const uint lane) {
     SurfaceData s = surfaces[job.surface];
     uvec4 quad = load_quad(s, job.patch_index);
     [[dont_unroll]] for (uint slot = lane; slot < kSlots; slot += kLanes) {
@@ -138,25 +138,25 @@ void share_patch(BuildJob job, uint lane) {
     }
 }
 
-uint read_reversed(BuildJob job) {
+uint read_reversed(const BuildJob job) {
     uint word = slot_word(job, kSlots);
     return shared_words[word] | shared_words[word + 1u] | shared_words[word + 2u] | shared_words[word + 3u];
 }
 
-float read_slot(uint word) { return uintBitsToFloat(shared_words[word]); }
+float read_slot(const uint word) { return uintBitsToFloat(shared_words[word]); }
 
-float blend_inside(uint word, vec2 at) {
+float blend_inside(const uint word, const vec2 at) {
     return blend_quad(read_slot(word), read_slot(word + kSlotWords), read_slot(word + 2u * kSlotWords),
                       read_slot(word + 3u * kSlotWords), at.x, at.y);
 }
-vec3 blend_vector_inside(uint word, vec2 at) {
+vec3 blend_vector_inside(const uint word, const vec2 at) {
     return vec3(blend_inside(word, at), blend_inside(word + 1u, at), blend_inside(word + 2u, at));
 }
 
-bool needs_frame(SurfaceData s) { return s.map != kNone && maps[s.map].is_tangent != 0u; }
+bool needs_frame(const SurfaceData s) { return s.map != kNone && maps[s.map].is_tangent != 0u; }
 
 /// Attributes at `at` inside a patch.
-VertexData evaluate_inside(BuildJob job, SurfaceData s, uvec4 quad, vec2 at) {
+VertexData evaluate_inside(const BuildJob job, const SurfaceData s, const uvec4 quad, const vec2 at) {
     uint word = slot_word(job, 0u);
     VertexData base;
     base.position = is_bicubic(s) ? evaluate_base(s, quad, job.patch_index, at.x, at.y)
@@ -172,13 +172,13 @@ VertexData evaluate_inside(BuildJob job, SurfaceData s, uvec4 quad, vec2 at) {
     return base;
 }
 
-vec3 read_slot_vector(uint word) { return vec3(read_slot(word), read_slot(word + 1u), read_slot(word + 2u)); }
-vec3 blend_vector_along(uint first, uint second, float s) {
+vec3 read_slot_vector(const uint word) { return vec3(read_slot(word), read_slot(word + 1u), read_slot(word + 2u)); }
+vec3 blend_vector_along(const uint first, const uint second, const float s) {
     return blend_vectors(read_slot_vector(first), read_slot_vector(second), s);
 }
 
 /// Attributes on the boundary of a patch. The ends of `place` are slots.
-VertexData evaluate_along(BuildJob job, SurfaceData s, uvec4 quad, LinePlace place) {
+VertexData evaluate_along(const BuildJob job, const SurfaceData s, const uvec4 quad, const LinePlace place) {
     uint first = slot_word(job, place.first);
     uint second = slot_word(job, place.second);
     VertexData base;
@@ -200,12 +200,12 @@ VertexData evaluate_along(BuildJob job, SurfaceData s, uvec4 quad, LinePlace pla
     return base;
 }
 
-LinePlace place_at_corner(uint corner) {
+LinePlace place_at_corner(const uint corner) {
     return LinePlace(kDominantSlot + corner, kDominantSlot + corner, 0.0, kNone, kNone, kMipCorners + corner);
 }
 
 /// As find_corner() and find_edge_place() have it, with slots in place of vertices.
-LinePlace place_on_boundary(BuildJob job, uint i, uint j) {
+LinePlace place_on_boundary(const BuildJob job, const uint i, const uint j) {
     uint edge = find_sample_edge(i, j, packed_patch_level(job.levels));
     if (edge == 4u) return place_at_corner(find_grid_corner(i, j));
     EdgeSample moved = snap_edge_sample(job.levels, uvec3(i, j, edge), ((job.reversed >> edge) & 1u) != 0u);
@@ -215,7 +215,7 @@ LinePlace place_on_boundary(BuildJob job, uint i, uint j) {
 }
 
 /// Sample (i, j) of the tree, as find_sample() of sample_evaluation.glsl has it.
-vec3 evaluate_tree_sample(BuildJob job, SurfaceData s, uvec4 quad, uint mips, uint i, uint j) {
+vec3 evaluate_tree_sample(const BuildJob job, const SurfaceData s, const uvec4 quad, const uint mips, uint i, uint j) {
     i += job.cell_x;
     j += job.cell_y;
     VertexData base;
@@ -232,7 +232,7 @@ vec3 evaluate_tree_sample(BuildJob job, SurfaceData s, uvec4 quad, uint mips, ui
 }
 
 /// Column and row of vertex v: first those inside, by rows, then the border, around: the latter have other work to do.
-uvec2 place_vertex(uint level, uint v) {
+uvec2 place_vertex(const uint level, uint v) {
     uint n = 1u << level;
     uint inner = n - 1u;
     if (v < inner * inner) return uvec2(1u + v % inner, 1u + v / inner);
@@ -244,7 +244,7 @@ uvec2 place_vertex(uint level, uint v) {
     return edge == 2u ? uvec2(n - along, n) : uvec2(0u, n - along);
 }
 
-void build_vertices(inout BuildJob job, uint lane) {
+void build_vertices(inout BuildJob job, const uint lane) {
     SurfaceData s = surfaces[job.surface];
     uvec4 quad = load_quad(s, job.patch_index);
     uint mips = load_mips(s, job.patch_index);
@@ -269,7 +269,7 @@ struct TreeSpace {
     vec3 origin, scale;
 };
 
-TreeSpace find_space(uint place) {
+TreeSpace find_space(const uint place) {
     TreeSpace space;
     for (uint k = 0u; k < 3u; ++k) {
         space.origin[k] = unorder_float(shared_bounds[6u * place + k]);
@@ -278,7 +278,7 @@ TreeSpace find_space(uint place) {
     return space;
 }
 
-void write_header(BuildJob job, TreeSpace space) {
+void write_header(const BuildJob job, const TreeSpace space) {
     for (uint k = 0u; k < 3u; ++k) {
         pool[job.base + kTreeOrigin + k] = floatBitsToUint(space.origin[k]);
         pool[job.base + kTreeScale + k] = floatBitsToUint(space.scale[k]);
@@ -294,14 +294,14 @@ struct CodeBox {
 
 CodeBox make_empty_box() { return CodeBox(uvec3(0xffffu), uvec3(0u)); }
 
-void extend_box(inout CodeBox box, TreeSpace space, vec3 lower, vec3 upper) {
+void extend_box(inout CodeBox box, const TreeSpace space, const vec3 lower, const vec3 upper) {
     for (uint k = 0u; k < 3u; ++k) {
         box.lower[k] = min(box.lower[k], encode_lower(lower[k], space.origin[k], space.scale[k]));
         box.upper[k] = max(box.upper[k], encode_upper(upper[k], space.origin[k], space.scale[k]));
     }
 }
 
-void extend_by_moved(BuildJob job, TreeSpace space, uvec4 i_j_edge_level, inout CodeBox box) {
+void extend_by_moved(const BuildJob job, const TreeSpace space, const uvec4 i_j_edge_level, inout CodeBox box) {
     uint level = i_j_edge_level.w;
     uint edge = i_j_edge_level.z;
     if (find_sample_edge(i_j_edge_level.x, i_j_edge_level.y, level) == 4u) return;
@@ -317,7 +317,7 @@ void extend_by_moved(BuildJob job, TreeSpace space, uvec4 i_j_edge_level, inout 
 }
 
 /// Extends a box by the snapped corners of node (x, y) of a level, for all coarser edges.
-void extend_boundary(BuildJob job, TreeSpace space, uvec2 node, uint level, inout CodeBox box) {
+void extend_boundary(const BuildJob job, const TreeSpace space, const uvec2 node, const uint level, inout CodeBox box) {
     if ((job.coverage & ~63u) == 0u) return;
     uint n = 1u << level;
     [[dont_unroll]] for (uint k = 0u; k < 8u; ++k) {
@@ -334,7 +334,7 @@ void extend_boundary(BuildJob job, TreeSpace space, uvec2 node, uint level, inou
 }
 
 /// Codes grow with what they encode: those of a box are the least and greatest of its vertices'.
-CodeBox find_leaf_box(BuildJob job, TreeSpace space, uvec2 cell) {
+CodeBox find_leaf_box(const BuildJob job, const TreeSpace space, const uvec2 cell) {
     vec3 lower = read_vertex(job, cell.x, cell.y);
     vec3 upper = lower;
     for (uint k = 1u; k < 4u; ++k) {
@@ -347,17 +347,17 @@ CodeBox find_leaf_box(BuildJob job, TreeSpace space, uvec2 cell) {
     return box;
 }
 
-void write_node(BuildJob job, uint level, uint number, CodeBox box) {
+void write_node(const BuildJob job, const uint level, const uint number, const CodeBox box) {
     uint word = job.base + kTreeHeaderWords + kTreeNodeWords * (count_nodes_above(level) + number);
     for (uint k = 0u; k < 3u; ++k) pool[word + k] = box.lower[k] | box.upper[k] << 16u;
 }
 
 /// Of node `number` of `level`, above the leaves.
-uint find_code_word(BuildJob job, uint level, uint number) {
+uint find_code_word(const BuildJob job, const uint level, const uint number) {
     return job.place * kWords + 3u * ((number << (2u * (job.level - 1u - level))));
 }
 
-void finish_node(BuildJob job, TreeSpace space, uint level, uint number, CodeBox box) {
+void finish_node(const BuildJob job, const TreeSpace space, const uint level, const uint number, CodeBox box) {
     extend_boundary(job, space, uvec2(morton_column(number), morton_row(number)), level, box);
     write_node(job, level, number, box);
     uint word = find_code_word(job, level, number);
@@ -365,7 +365,7 @@ void finish_node(BuildJob job, TreeSpace space, uint level, uint number, CodeBox
 }
 
 /// A node of the level above the leaves, with its leaves.
-void build_last_nodes(BuildJob job, TreeSpace space, uint number) {
+void build_last_nodes(const BuildJob job, const TreeSpace space, const uint number) {
     CodeBox box = make_empty_box();
     [[dont_unroll]] for (uint leaf = 4u * number; leaf < 4u * number + 4u; ++leaf) {
         uvec2 cell = uvec2(morton_column(leaf), morton_row(leaf));
@@ -379,7 +379,7 @@ void build_last_nodes(BuildJob job, TreeSpace space, uint number) {
 }
 
 /// Union of the quantised children, which are nodes above the leaves.
-void build_node(BuildJob job, TreeSpace space, uint level, uint number) {
+void build_node(const BuildJob job, const TreeSpace space, const uint level, const uint number) {
     CodeBox box = make_empty_box();
     [[dont_unroll]] for (uint child = 0u; child < 4u; ++child) {
         uint word = find_code_word(job, level + 1u, 4u * number + child);
@@ -393,7 +393,7 @@ void build_node(BuildJob job, TreeSpace space, uint level, uint number) {
 }
 
 /// The tree of a patch that is one cell.
-void build_only_leaf(BuildJob job, TreeSpace space) {
+void build_only_leaf(const BuildJob job, const TreeSpace space) {
     CodeBox box = find_leaf_box(job, space, uvec2(0u));
     extend_boundary(job, space, uvec2(0u), 0u, box);
     write_node(job, 0u, 0u, box);
@@ -406,7 +406,7 @@ void wait_for_group() {
 }
 
 /// `lane`: index of this invocation in the job.
-void build_tree(BuildJob job, uint lane) {
+void build_tree(BuildJob job, const uint lane) {
     reset_bounds(job.place, lane);
     if (job.is_real) share_patch(job, lane);
     wait_for_group();

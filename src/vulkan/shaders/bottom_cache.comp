@@ -7,18 +7,18 @@ layout(scalar, push_constant) uniform Push { CastPush push; };
 
 const uint kLevelBits = 63u;
 
-bool is_alive(TreeRecord record) {
+bool is_alive(const TreeRecord record) {
     if (push.is_cached == 0u || record.coverage == 0u) return false;
     return push.pool_start + push.pool_budget - record.address <= push.pool_capacity;
 }
 
-bool does_cover(uint coverage, uint need) {
+bool does_cover(const uint coverage, const uint need) {
     if (findMSB(coverage & kLevelBits) < findMSB(need & kLevelBits)) return false;
     return (need & ~coverage & ~kLevelBits) == 0u;
 }
 
 /// Allocates `units` contiguous units; kNone: no room left in this wave.
-uint allocate(uint units) {
+uint allocate(const uint units) {
     for (uint attempt = 0u; attempt < 4u; ++attempt) {
         uint address = atomicAdd(counters.pool_head, units);
         if (address + units - push.pool_start > push.pool_budget) return kNone;

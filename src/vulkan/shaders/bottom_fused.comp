@@ -10,7 +10,7 @@ layout(scalar, push_constant) uniform Push { CastPush push; };
 
 shared uint shared_job;
 
-void work_on(uint tree) {
+void work_on(const uint tree) {
     TreeRecord record = trees[tree];
     if (record.ready_wave != push.wave) return; // uniform over the group
     BuildJob job = make_build_job(tree, 0u, push.patch_count, push.pool_capacity);

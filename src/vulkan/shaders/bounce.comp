@@ -7,7 +7,7 @@
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
 /// Sets the next ray; false if the path terminates.
-bool continue_path(uint path_index, HitData hit) {
+bool continue_path(const uint path_index, const HitData hit) {
     SurfacePointData point = points[path_index];
     uint pixel_seed = paths[path_index].pixel_seed;
     vec2 pick = draw_bounce_pair(pixel_seed, push.sample_index, push.depth, kPickPair);

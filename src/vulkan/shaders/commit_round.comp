@@ -6,7 +6,7 @@
 layout(scalar, push_constant) uniform Push { CastPush push; };
 
 /// The candidate of rank `rank` by (instance, patch). Those of a ray come first among its places.
-CandidateData find_ranked(uint place, uint rank) {
+CandidateData find_ranked(const uint place, const uint rank) {
     uint first = place * push.slots;
     uint count = 0u;
     while (count < push.slots && candidates[first + count].instance != kNone) ++count;
@@ -25,7 +25,7 @@ CandidateData find_ranked(uint place, uint rank) {
     return candidates[first];
 }
 
-void take_hit(uint ray_index, uint place) {
+void take_hit(const uint ray_index, const uint place) {
     uint64_t packed_hit = nearest[place];
     uint rank = uint(packed_hit);
     if (rank == 0xffffffffu) return;

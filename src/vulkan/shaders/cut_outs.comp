@@ -11,7 +11,7 @@ layout(scalar, push_constant) uniform Push { CutOutPush push; };
 #include "vulkan/shaders/met_lights.glsl"
 
 /// The same of a material whose inputs have textures: of opacity and metallic so far.
-vec2 apply_wall_inputs(HitData hit, vec2 numbers_before, inout MaterialData material) {
+vec2 apply_wall_inputs(const HitData hit, const vec2 numbers_before, inout MaterialData material) {
     MaterialInputData inputs = material_inputs[material.inputs];
     inputs.numbers.word[kInputOpacity] = numbers_before.x;
     inputs.numbers.word[kInputMetallic] = numbers_before.y;
@@ -21,7 +21,7 @@ vec2 apply_wall_inputs(HitData hit, vec2 numbers_before, inout MaterialData mate
 }
 
 /// Opacity, and metallic where clear walls ask for it; of these their textures change the glass as well.
-vec2 find_wall_numbers(HitData hit, inout MaterialData material) {
+vec2 find_wall_numbers(const HitData hit, inout MaterialData material) {
     InstanceData instance = instances[hit.instance];
     uint indices[2] = {material.opacity_texture, kHasGlass != 0u ? material.metallic_texture : kNone};
     vec2 factors = vec2(1.0);
@@ -37,13 +37,13 @@ vec2 find_wall_numbers(HitData hit, inout MaterialData material) {
 }
 
 /// Cosine of a ray to the geometric normal.
-float find_cosine(uint ray_index, HitData hit) {
+float find_cosine(const uint ray_index, const HitData hit) {
     CellPoint found = evaluate_hit(hit);
     return abs(dot(found.triangle.normal, rays[ray_index].direction));
 }
 
 /// The path goes on with `left` of its light. Lights that it has met before the wall shine through none.
-void pass_wall(uint path_index, float distance, vec3 left) {
+void pass_wall(const uint path_index, const float distance, const vec3 left) {
     vec3 lost = paths[path_index].throughput * (vec3(1.0) - left);
     paths[path_index].throughput *= left;
     if (lost == vec3(0.0)) return;
@@ -55,7 +55,7 @@ void pass_wall(uint path_index, float distance, vec3 left) {
 }
 
 /// Of the ray of a path, or of its shadow ray, which loses part of its light in place of being drawn for.
-bool passes(uint path_index, uint ray_index, HitData hit) {
+bool passes(const uint path_index, const uint ray_index, const HitData hit) {
     if (!is_hit(hit)) return false;
     MaterialData material = materials[instances[hit.instance].material];
     bool is_wall = kHasGlass != 0u && material.has_glass != 0u && material.glass.kind == kClearWall;

@@ -16,13 +16,14 @@ struct EnvironmentDraw {
     vec2 position;
 };
 
-float load_cumulative(uint first, uint index) { return texelFetch(environment_table, int(first + index)).x; }
+float load_cumulative(const uint first, const uint index) { return texelFetch(environment_table,
+                      int(first + index)).x; }
 
 /// First entry of the cells of a row.
-uint find_row(EnvironmentData e, uint row) { return e.cells_y + 1u + row * (e.cells_x + 1u); }
+uint find_row(const EnvironmentData e, const uint row) { return e.cells_y + 1u + row * (e.cells_x + 1u); }
 
 /// Interval of a cumulative distribution of `count` intervals that contains u; never one of zero width.
-uint find_interval(uint first, uint count, float u) {
+uint find_interval(const uint first, const uint count, const float u) {
     uint low = 0u;
     uint high = count - 1u;
     while (low < high) {
@@ -35,14 +36,14 @@ uint find_interval(uint first, uint count, float u) {
     return low;
 }
 
-float cell_density(EnvironmentData e, uint column, uint row, vec3 direction) {
+float cell_density(const EnvironmentData e, const uint column, const uint row, const vec3 direction) {
     uint cells = find_row(e, row);
     float in_row = load_cumulative(cells, column + 1u) - load_cumulative(cells, column);
     float probability = in_row * (load_cumulative(0u, row + 1u) - load_cumulative(0u, row));
     return environment_cell_density(e, probability, direction);
 }
 
-EnvironmentDraw draw_environment_direction(EnvironmentData e, vec2 u) {
+EnvironmentDraw draw_environment_direction(const EnvironmentData e, const vec2 u) {
     if (e.texture_index == kNone) {
         EnvironmentDraw uniform_draw = {square_to_sphere(u), sphere_pdf(), vec2(0.0)};
         return uniform_draw;
@@ -60,16 +61,16 @@ EnvironmentDraw draw_environment_direction(EnvironmentData e, vec2 u) {
 }
 
 /// Radiance at a position in the image.
-vec3 environment_radiance_at(EnvironmentData e, vec2 position) {
+vec3 environment_radiance_at(const EnvironmentData e, const vec2 position) {
     return e.texture_index == kNone ? e.scale : fetch_latlong(e.texture_index, position) * e.scale;
 }
 
-vec3 environment_radiance(EnvironmentData e, vec3 direction) {
+vec3 environment_radiance(const EnvironmentData e, const vec3 direction) {
     return environment_radiance_at(e, locate_in_environment(e, direction));
 }
 
 /// Sampling density of a direction.
-float environment_pdf(EnvironmentData e, vec3 direction) {
+float environment_pdf(const EnvironmentData e, const vec3 direction) {
     if (e.texture_index == kNone) return sphere_pdf();
     vec2 position = locate_in_environment(e, direction);
     return cell_density(e, uint(locate_environment_cell(position.x, float(e.cells_x))),

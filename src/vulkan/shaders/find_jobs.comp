@@ -4,7 +4,7 @@
 #include "formulas/patch_tree.h"
 #include "vulkan/shaders/ray_levels.glsl"
 
-uint find_need(uint tree, CandidateData candidate) {
+uint find_need(const uint tree, const CandidateData candidate) {
     if (tree >= push.patch_count) return 1u << kTreeLevels;
     uint field = kHasRayLod != 0u && push.is_ray_lod != 0u
                      ? candidate.levels
@@ -13,7 +13,7 @@ uint find_need(uint tree, CandidateData candidate) {
 }
 
 /// Fills in what the walk of its ray had no registers for.
-CandidateData complete_candidate(uint place) {
+CandidateData complete_candidate(const uint place) {
     CandidateData candidate = candidates[place];
     if (candidate.tree >= push.patch_count) {
         TileRecord tile = tile_records[candidate.tree - push.patch_count];

@@ -7,7 +7,7 @@ layout(constant_id = 1) const uint kIsBoxLeaf = 0;
 
 layout(scalar, push_constant) uniform Push { CastPush push; };
 
-vec2 find_weights(SurfaceData s, HitData hit, ObjectRay ray, uvec2 cell, uint is_upper) {
+vec2 find_weights(const SurfaceData s, const HitData hit, const ObjectRay ray, const uvec2 cell, const uint is_upper) {
     vec3 p[3];
     for (uint k = 0u; k < 3u; ++k) {
         // Corners 00, 10, 11 of the lower triangle, 00, 11, 01 of the upper one.

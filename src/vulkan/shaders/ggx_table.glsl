@@ -13,12 +13,12 @@ layout(constant_id = kInputTexturesConstant) const uint kHasInputTextures = 0;
 layout(binding = kBindAlbedos) uniform samplerBuffer ggx_albedo_table;
 
 /// Scale and bias of an entry.
-Vec2 read_ggx_table(uint i) { return texelFetch(ggx_albedo_table, int(i)).xy; }
+Vec2 read_ggx_table(const uint i) { return texelFetch(ggx_albedo_table, int(i)).xy; }
 
 /// The table of formulas/layer_table.h lies behind it. Here a table is where it begins.
 #define GridTable uint
 const GridTable kGridTable = kGgxEntryCount;
-Vec2 read_grid_entry(GridTable table, uint i) { return texelFetch(ggx_albedo_table, int(table + i)).xy; }
+Vec2 read_grid_entry(const GridTable table, const uint i) { return texelFetch(ggx_albedo_table, int(table + i)).xy; }
 #include "formulas/layer_block.h"
 
 /// The same, or the block of one point of a material whose inputs have textures.
@@ -28,14 +28,14 @@ struct LayerTable {
     LayerPlace place;
 };
 
-LayerTable make_layer_table(GridTable entries) {
+LayerTable make_layer_table(const GridTable entries) {
     LayerTable table;
     table.entries = entries;
     table.is_block = false;
     return table;
 }
 
-Vec2 read_layer_entry(LayerTable table, uint i) {
+Vec2 read_layer_entry(const LayerTable table, const uint i) {
     if (kHasInputTextures != 0u && table.is_block) return blend_layer_block(table.entries, table.place, i);
     return read_grid_entry(table.entries, i);
 }

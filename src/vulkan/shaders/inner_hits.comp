@@ -5,7 +5,7 @@
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
-bool is_inner(uint path_index, HitData hit) {
+bool is_inner(const uint path_index, const HitData hit) {
     CellPoint found = evaluate_hit(hit);
     return dot(found.triangle.normal, rays[path_index].direction) > 0.0;
 }

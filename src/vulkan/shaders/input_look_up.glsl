@@ -11,10 +11,10 @@ layout(scalar, set = 0, binding = kBindMaterials) readonly buffer MaterialInputs
 layout(scalar, set = 0, binding = kBindMaterials) readonly buffer InputTextures { InputTextureData input_textures[]; };
 layout(scalar, set = 0, binding = kBindMaterials) readonly buffer InputTiles { uint input_tiles[]; };
 
-bool has_input_textures(MaterialData material) { return kHasInputTextures != 0u && material.inputs != kNone; }
+bool has_input_textures(const MaterialData material) { return kHasInputTextures != 0u && material.inputs != kNone; }
 
 /// `numbers`: those before the textures.
-InputNumbers find_inputs(MaterialInputData inputs, InputNumbers numbers, TexturePlace place) {
+InputNumbers find_inputs(const MaterialInputData inputs, InputNumbers numbers, const TexturePlace place) {
     // A loop, so that the look-up is inlined only once.
     for (uint k = 0u; k < inputs.texture_count; ++k) {
         InputTextureData source = input_textures[inputs.first_texture + k];
@@ -36,7 +36,8 @@ InputNumbers find_inputs(MaterialInputData inputs, InputNumbers numbers, Texture
 }
 
 /// `at`: on the patch of an instance.
-InputNumbers find_inputs_at(MaterialInputData inputs, InstanceData instance, uint patch_index, vec2 at) {
+InputNumbers find_inputs_at(const MaterialInputData inputs, const InstanceData instance, const uint patch_index,
+                            const vec2 at) {
     SurfaceData s = surfaces[instance.surface];
     vec2 uv = interpolate_uv(s, load_quad(s, patch_index), at);
     return find_inputs(inputs, inputs.numbers, TexturePlace(instance.surface, patch_index, at, uv));

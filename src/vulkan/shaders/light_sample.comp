@@ -20,7 +20,7 @@ struct DrawnLight {
 };
 
 /// `is_open`: light from behind the surface counts.
-DrawnLight draw_from_environment(vec3 normal, bool is_open, vec2 u) {
+DrawnLight draw_from_environment(const vec3 normal, const bool is_open, const vec2 u) {
     EnvironmentDraw drawn = draw_environment_direction(push.environment, u);
     DrawnLight result = {{drawn.direction, make_infinity(), vec3(0.0), 0.0}, false, vec3(0.0), kNone};
     // Early out without reading the image: half of the directions point into the surface.
@@ -30,7 +30,7 @@ DrawnLight draw_from_environment(vec3 normal, bool is_open, vec2 u) {
     return result;
 }
 
-DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u) {
+DrawnLight draw_from_emitter(const vec3 position, const uint lod_bias, const uint emitter, const vec2 u) {
     uvec2 range = find_emitter_range(push.emitter_count, push.emitter_range_count, 0u, emitter);
     InstanceData instance = instances[range.y];
     uint patch_index = emitter - range.x;
@@ -52,7 +52,8 @@ DrawnLight draw_from_emitter(vec3 position, uint lod_bias, uint emitter, vec2 u)
     return result;
 }
 
-DrawnLight draw_from(LightPick pick, SurfacePointData at, bool is_open, uint lod_bias, float u_emitter, vec2 u) {
+DrawnLight draw_from(const LightPick pick, const SurfacePointData at, const bool is_open, const uint lod_bias,
+                     const float u_emitter, const vec2 u) {
     uint emitter = kHasLightTree != 0u && pick.source == kNone ? pick.emitter : kNone;
     LightSourceData source;
     if (emitter == kNone) {
@@ -68,7 +69,8 @@ DrawnLight draw_from(LightPick pick, SurfacePointData at, bool is_open, uint lod
 }
 
 /// Selects a light in proportion to its estimated irradiance, then a direction; density 0: no sample.
-DrawnLight draw_light(SurfacePointData at, uint instance, bool is_open, uint lod_bias, vec2 pick_and_emitter, vec2 u) {
+DrawnLight draw_light(const SurfacePointData at, const uint instance, const bool is_open, const uint lod_bias,
+                      const vec2 pick_and_emitter, const vec2 u) {
     LitPoint lit = {at.position, at.geometric_normal, instance};
     LightPick pick =
         pick_light(push.source_count, push.first_light_node, lit, pick_and_emitter.x, pick_and_emitter.y);
@@ -83,7 +85,7 @@ DrawnLight draw_light(SurfacePointData at, uint instance, bool is_open, uint lod
 }
 
 /// `lift`: how far the ray starts above the triangle, where the light comes from below it.
-RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, uint lod_bias) {
+RayData make_shadow_ray(const SurfacePointData point, const DrawnLight drawn, const float lift, const uint lod_bias) {
     vec3 origin =
         lift > 0.0
             ? point.position + point.geometric_normal * (point.position_error + lift)
@@ -98,14 +100,14 @@ RayData make_shadow_ray(SurfacePointData point, DrawnLight drawn, float lift, ui
 }
 
 /// Whether light from behind the surface may count.
-bool is_open_behind(HitData hit, uint material_index) {
+bool is_open_behind(const HitData hit, const uint material_index) {
     if (may_lift(hit)) return true;
     return kHasGlass != 0u && !is_catcher(hit, push.depth) && is_see_through(materials[material_index]);
 }
 
 /// Sets the shadow ray and its contribution; false if zero. MIS weight 1 without bounces and on shadow catchers: no
 /// other ray finds lights. Materials are read behind the light, and the BSDF is made last: both are large.
-bool sample_light(uint path_index, HitData hit) {
+bool sample_light(const uint path_index, const HitData hit) {
     uint pixel_seed = paths[path_index].pixel_seed;
     uint lod_bias = rays[path_index].lod_bias;
     uint material_index = instances[hit.instance].material;

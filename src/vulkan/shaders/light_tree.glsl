@@ -4,14 +4,14 @@
 
 #include "vulkan/shaders/lights.glsl"
 
-float estimate_alone(LightNodeData node, LitPoint at) {
+float estimate_alone(const LightNodeData node, const LitPoint at) {
     if (node.source >= kEmitterLeaf) return estimate_node(node, at); // kNone too
     LightSourceData source = sources[node.source];
     return is_lit(source, at) ? estimate_leaf(node, source, at) : 0.0;
 }
 
 /// Of a node that is near, that of its children, which knows more.
-float estimate_child(uint node_index, LitPoint at) {
+float estimate_child(const uint node_index, const LitPoint at) {
     LightNodeData node = light_nodes[node_index];
     bool is_split = node.source == kNone && is_near(node, at);
     uint place = is_split ? node_index + 1u : node_index;
@@ -26,19 +26,19 @@ float estimate_child(uint node_index, LitPoint at) {
 }
 
 /// Of the child beside its parent, and of the other.
-vec2 estimate_children(uint first, LitPoint at) {
+vec2 estimate_children(const uint first, const LitPoint at) {
     vec2 estimates;
     for (uint k = 0u; k < 2u; ++k) estimates[k] = estimate_child(k == 0u ? first : light_nodes[first].end, at);
     return estimates;
 }
 
 /// Part of the draws that the tree gets.
-float find_share_of_tree(uint root, LitPoint at, float listed) {
+float find_share_of_tree(const uint root, const LitPoint at, const float listed) {
     return kHasLightTree != 0u ? find_tree_share(listed, estimate_child(root, at)) : 0.0;
 }
 
 /// From each node to the child that the random number falls upon.
-LightPick pick_in_tree(uint root, LitPoint at, float u, float u_further) {
+LightPick pick_in_tree(const uint root, const LitPoint at, float u, const float u_further) {
     uint place = root;
     float probability = 1.0;
     bool is_continued = false;
@@ -65,7 +65,7 @@ LightPick pick_in_tree(uint root, LitPoint at, float u, float u_further) {
 }
 
 /// Probability of a leaf among all of the tree: that of the ways down to it.
-float find_in_tree(uint root, LitPoint at, uint leaf) {
+float find_in_tree(const uint root, const LitPoint at, const uint leaf) {
     uint place = root;
     float probability = 1.0;
     while (place != leaf) {
@@ -81,7 +81,8 @@ float find_in_tree(uint root, LitPoint at, uint leaf) {
 }
 
 /// One of all lights.
-LightPick pick_light(uint source_count, uint root, LitPoint at, float u, float u_further) {
+LightPick pick_light(const uint source_count, const uint root, const LitPoint at, const float u,
+                     const float u_further) {
     float listed = total_irradiance(source_count, at);
     if (kHasLightTree == 0u) return pick_listed(source_count, at, u, listed);
     // As cpu/shading/light_choice.cpp, so that both round alike.
@@ -97,7 +98,8 @@ LightPick pick_light(uint source_count, uint root, LitPoint at, float u, float u
 }
 
 /// The next leaf from `place` on, before `end`, with a flag and a sphere that the ray meets; `end`: none.
-uint find_leaf(uint place, uint end, vec3 origin, vec3 direction, float distance, uint flag) {
+uint find_leaf(uint place, const uint end, const vec3 origin, const vec3 direction, const float distance,
+               const uint flag) {
     while (place < end) {
         LightNodeData node = light_nodes[place];
         bool is_met = (node.flags & flag) != 0u && may_meet(node, origin, direction, distance);

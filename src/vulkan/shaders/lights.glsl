@@ -26,38 +26,38 @@ struct LightPick {
 };
 
 /// Whether a light of the scene's list lights the object that the point is on.
-bool is_lit(LightSourceData source, LitPoint at) {
+bool is_lit(const LightSourceData source, const LitPoint at) {
     if (kHasLightLinks == 0u || source.link == kNone) return true;
     return is_in_set(link_words[source.link + at.instance / 32u], at.instance);
 }
 
-bool has_texture(LightSourceData source) { return kHasLightTextures != 0u && source.texture != kNone; }
+bool has_texture(const LightSourceData source) { return kHasLightTextures != 0u && source.texture != kNone; }
 
 /// What the texture of a light adds to its colour where a ray meets it.
-vec3 find_light_color(LightSourceData source, vec3 origin, vec3 direction) {
+vec3 find_light_color(const LightSourceData source, const vec3 origin, const vec3 direction) {
     TextureData data = textures[source.texture];
     vec2 uv = find_face_uv(source, origin, direction, vec2(data.width, data.height));
     return max(fetch_bilinear(data, locate_texture_uv(uv, vec2(data.width, data.height)), kWrapRepeat), vec3(0.0));
 }
 
 /// Light of the scene's list that a ray meets, with its texture.
-LightSeen meet_source(LightSourceData source, vec3 origin, vec3 direction, float distance) {
+LightSeen meet_source(const LightSourceData source, const vec3 origin, const vec3 direction, const float distance) {
     LightSeen seen = meet_light(source, origin, direction, distance);
     if (has_texture(source) && seen.pdf > 0.0) seen.radiance *= find_light_color(source, origin, direction);
     return seen;
 }
 
-float estimate_source(LightSourceData source, LitPoint at) {
+float estimate_source(const LightSourceData source, const LitPoint at) {
     return is_lit(source, at) ? estimate_irradiance(source, at.position) : 0.0;
 }
 
-float total_irradiance(uint source_count, LitPoint at) {
+float total_irradiance(const uint source_count, const LitPoint at) {
     float total = 0.0;
     for (uint k = 0u; k < source_count; ++k) total += estimate_source(sources[k], at);
     return total;
 }
 
-LightPick pick_listed(uint source_count, LitPoint at, float u, float total) {
+LightPick pick_listed(const uint source_count, const LitPoint at, const float u, const float total) {
     LightPick dark = {kNone, kNone, 0.0};
     if (!(total > 0.0)) return dark;
     float target = u * total;
@@ -70,13 +70,14 @@ LightPick pick_listed(uint source_count, LitPoint at, float u, float total) {
     }
 }
 
-float load_emitter_probability(uint emitter) { return uintBitsToFloat(texelFetch(emitter_table, int(emitter)).y); }
+float load_emitter_probability(const uint emitter) { return uintBitsToFloat(texelFetch(emitter_table,
+                               int(emitter)).y); }
 
 /// A tree has chosen the emissive patch itself.
-float load_probability(uint emitter) { return kHasLightTree != 0u ? 1.0 : load_emitter_probability(emitter); }
+float load_probability(const uint emitter) { return kHasLightTree != 0u ? 1.0 : load_emitter_probability(emitter); }
 
 /// Emissive patch selected by a random number.
-uint find_emitter(uint emitter_count, float u) {
+uint find_emitter(const uint emitter_count, const float u) {
     uint part = uint(u * kEmitterParts);
     uint low = 0u;
     uint high = emitter_count - 1u;
@@ -91,7 +92,7 @@ uint find_emitter(uint emitter_count, float u) {
 }
 
 /// Last range whose component (0: first emitter, 1: instance) is at most `value`. Both increase over the ranges.
-uvec2 find_emitter_range(uint emitter_count, uint range_count, uint component, uint value) {
+uvec2 find_emitter_range(const uint emitter_count, const uint range_count, const uint component, const uint value) {
     uint low = 0u;
     uint high = range_count - 1u;
     while (low < high) {

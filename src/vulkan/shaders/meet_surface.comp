@@ -9,7 +9,7 @@
 layout(scalar, push_constant) uniform Push { PathPush push; };
 
 /// Probability of an emissive patch; without a tree of all of them.
-float find_emitter_probability(LitPoint at, uint emitter) {
+float find_emitter_probability(const LitPoint at, const uint emitter) {
     float listed = total_irradiance(push.source_count, at);
     if (kHasLightTree != 0u) {
         uint leaf = texelFetch(emitter_table, int(emitter)).y;
@@ -22,7 +22,7 @@ float find_emitter_probability(LitPoint at, uint emitter) {
 }
 
 /// Density with which draw_light at the previous vertex would have sampled this point.
-float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
+float emitter_pdf(PathData path, const HitData hit, const SurfacePointData point) {
     if (push.emitter_range_count == 0u) return 0.0;
     uint emitter =
         find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x + hit.patch_index;
@@ -32,7 +32,7 @@ float emitter_pdf(PathData path, HitData hit, SurfacePointData point) {
                            point.position - path.previous);
 }
 
-vec3 find_emission(PathData path, HitData hit, SurfacePointData point, vec3 emission) {
+vec3 find_emission(PathData path, const HitData hit, const SurfacePointData point, const vec3 emission) {
     if (emission == vec3(0.0)) return vec3(0.0);
     if (push.depth == 0u) return path.throughput * emission;
     vec3 light = path.throughput * emission * power_heuristic(path.bsdf_pdf, emitter_pdf(path, hit, point));
@@ -40,7 +40,8 @@ vec3 find_emission(PathData path, HitData hit, SurfacePointData point, vec3 emis
 }
 
 /// Takes what a body took on the way, and what goes with the choice between glass and the rest.
-PathData meet_glass(uint path_index, PathData path, HitData hit, SurfacePointData point, uint material_index) {
+PathData meet_glass(const uint path_index, PathData path, const HitData hit, const SurfacePointData point,
+                    const uint material_index) {
     MaterialData material = load_vertex_material(material_index, push.capacity, path_index).numbers;
     vec3 factor = vec3(1.0);
     if (material.has_glass != 0u && material.glass.kind == kSolidGlass) {
@@ -60,7 +61,7 @@ PathData meet_glass(uint path_index, PathData path, HitData hit, SurfacePointDat
 }
 
 /// To the layers of light.
-void share_emission(uint path_index, vec3 light, uint group) {
+void share_emission(const uint path_index, const vec3 light, const uint group) {
     add_to_group(push.capacity, path_index, group, light);
     if (push.depth == 0u)
         add_to_kind(push.capacity, path_index, kKindEmission, light);
@@ -68,7 +69,8 @@ void share_emission(uint path_index, vec3 light, uint group) {
         add_scattered(push.capacity, path_index, light, push.depth - 1u);
 }
 
-GuideVertex make_guide_vertex(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
+GuideVertex make_guide_vertex(const uint path_index, const PathData path, const SurfacePointData point,
+                              const MaterialData material) {
     GuideVertex vertex = {point.base_color, material.emission, point.roughness, point.metallic, false};
     if (kHasGlass != 0u && material.has_glass != 0u) {
         vec2 pick = draw_bounce_pair(path.pixel_seed, push.sample_index, push.depth, kPickPair);
@@ -81,7 +83,8 @@ GuideVertex make_guide_vertex(uint path_index, PathData path, SurfacePointData p
     return vertex;
 }
 
-void note_guides(uint path_index, PathData path, SurfacePointData point, MaterialData material) {
+void note_guides(const uint path_index, const PathData path, const SurfacePointData point,
+                 const MaterialData material) {
     GuideVertex vertex = make_guide_vertex(path_index, path, point, material);
     bool goes_on = push.depth + 1u < push.last_depth && is_mirror(vertex);
     note_guided(push.capacity, path_index, !goes_on);
@@ -90,7 +93,7 @@ void note_guides(uint path_index, PathData path, SurfacePointData point, Materia
                    point.bent_normal);
 }
 
-void meet_surface(uint path_index, HitData hit) {
+void meet_surface(const uint path_index, const HitData hit) {
     PathData path = paths[path_index];
     SurfacePointData point = points[path_index];
     uint material_index = instances[hit.instance].material;

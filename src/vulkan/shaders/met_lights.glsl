@@ -18,7 +18,8 @@ struct Meeting {
 
 /// MIS-weighted against next-event estimation at the previous vertex, which draws the light with `share`; less of it
 /// comes through the body that the path is in.
-vec3 weigh_light(Meeting meeting, PathData path, LightSourceData source, LightSeen seen, float share) {
+vec3 weigh_light(const Meeting meeting, const PathData path, const LightSourceData source, const LightSeen seen,
+                 const float share) {
     vec3 light = seen.radiance * power_heuristic(path.bsdf_pdf, seen.pdf * share);
     if (kHasGlass != 0u && path.body != kNone) light *= absorb_along(materials[path.body].glass.depth, seen.distance);
     if (kLightGroups != 0u && meeting.is_shared)
@@ -27,7 +28,8 @@ vec3 weigh_light(Meeting meeting, PathData path, LightSourceData source, LightSe
 }
 
 /// Lights of the tree.
-vec3 gather_in_tree(Meeting meeting, PathData path, LitPoint at, float tree_share, vec3 direction, float distance) {
+vec3 gather_in_tree(const Meeting meeting, const PathData path, const LitPoint at, const float tree_share,
+                    const vec3 direction, const float distance) {
     vec3 sum = vec3(0.0);
     uint root = push.first_light_node;
     uint end = light_nodes[root].end;
@@ -44,7 +46,8 @@ vec3 gather_in_tree(Meeting meeting, PathData path, LitPoint at, float tree_shar
 }
 
 /// `behind`: the environment along a ray of infinite distance.
-vec3 gather_light(Meeting meeting, PathData path, vec3 direction, float distance, LightSeen behind) {
+vec3 gather_light(const Meeting meeting, const PathData path, const vec3 direction, const float distance,
+                  const LightSeen behind) {
     vec3 sum = vec3(0.0);
     LitPoint at = {path.previous, path.normal, path.instance};
     float total = total_irradiance(push.source_count, at);
@@ -63,7 +66,7 @@ vec3 gather_light(Meeting meeting, PathData path, vec3 direction, float distance
 }
 
 /// Adds what a bounce ray meets before `distance`, of which `share` comes to the camera.
-void meet_lights(uint path_index, vec3 share, float distance, LightSeen behind) {
+void meet_lights(const uint path_index, const vec3 share, const float distance, const LightSeen behind) {
     PathData path = paths[path_index];
     vec3 direction = rays[path_index].direction;
     uint bounces = push.depth - 1u;
@@ -81,7 +84,7 @@ void meet_lights(uint path_index, vec3 share, float distance, LightSeen behind) 
 }
 
 /// True if the light is met, though its texture may be black there.
-bool add_sight(uint path_index, vec3 share, LightSourceData source, float distance) {
+bool add_sight(const uint path_index, const vec3 share, const LightSourceData source, const float distance) {
     RayData ray = rays[path_index];
     vec3 seen = see_light(source, ray.origin, ray.direction, distance);
     if (seen == vec3(0.0)) return false;
@@ -94,7 +97,7 @@ bool add_sight(uint path_index, vec3 share, LightSourceData source, float distan
 }
 
 /// Adds the lights that a camera ray is to see before `distance`; true if it meets one.
-bool see_lights(uint path_index, vec3 share, float distance) {
+bool see_lights(const uint path_index, const vec3 share, const float distance) {
     bool is_met = false;
     for (uint k = 0u; k < push.source_count; ++k)
         if (sources[k].is_visible != 0u && add_sight(path_index, share, sources[k], distance)) is_met = true;

@@ -11,12 +11,12 @@ layout(constant_id = 1) const uint kStackSize = 128;
 uvec2 stack[kStackSize];
 uint stack_size = 0u;
 
-void push_node(uint node, float entry) {
+void push_node(const uint node, const float entry) {
     stack[stack_size] = uvec2(node, floatBitsToUint(entry));
     ++stack_size;
 }
 
-void enter_inner(uint first, float parent_entry) {
+void enter_inner(const uint first, const float parent_entry) {
     float entry[2];
     bool wanted[2];
     for (int k = 0; k < 2; ++k) {

@@ -13,7 +13,7 @@ struct VertexData {
 };
 
 /// Not for surfaces without frames.
-TangentFrame load_frame(SurfaceData s, uint vertex) {
+TangentFrame load_frame(const SurfaceData s, const uint vertex) {
     if (s.first_derivative != kNone)
         return TangentFrame(load_position_at(s.first_derivative + 2u * vertex),
                             load_position_at(s.first_derivative + 2u * vertex + 1u), load_normal(s, vertex));
@@ -21,7 +21,7 @@ TangentFrame load_frame(SurfaceData s, uint vertex) {
     return unpack_tangent_frame(packed_frame.x, packed_frame.y);
 }
 
-VertexData load_vertex(SurfaceData s, uint vertex) {
+VertexData load_vertex(const SurfaceData s, const uint vertex) {
     VertexData data;
     data.position = load_position(s, vertex);
     data.uv = s.first_uv == kNone ? vec2(0.0) : load_uv(s, vertex);
@@ -37,11 +37,11 @@ VertexData load_vertex(SurfaceData s, uint vertex) {
 }
 
 /// Texel for a fetch; outside with kWrapBlack there is no displacement.
-vec3 load_wrapped_texel(TextureData texture_data, MapData map, int column, int row) {
+vec3 load_wrapped_texel(const TextureData texture_data, const MapData map, const int column, const int row) {
     return column < 0 || row < 0 ? map.midlevel : load_texel(texture_data, uint(column), uint(row)).xyz;
 }
 
-vec3 decode_displacement(MapData map, vec3 value) {
+vec3 decode_displacement(const MapData map, const vec3 value) {
     precise vec3 raw = value - map.midlevel;
     return vec3(decode_row(raw.x, raw.y, raw.z, map.row0.x, map.row0.y, map.row0.z),
                 decode_row(raw.x, raw.y, raw.z, map.row1.x, map.row1.y, map.row1.z),
@@ -49,7 +49,8 @@ vec3 decode_displacement(MapData map, vec3 value) {
 }
 
 /// Value of a B-spline in the cell of coefficients that begins in column `left` and row `top`.
-vec3 fetch_spline(TextureData texture_data, MapData map, int left, int top, vec2 fraction) {
+vec3 fetch_spline(const TextureData texture_data, const MapData map, const int left, const int top,
+                  const vec2 fraction) {
     CubicWeights along = weigh_spline(fraction.x);
     vec3 point[4];
     for (int j = 0; j < 4; ++j) {
@@ -64,7 +65,7 @@ vec3 fetch_spline(TextureData texture_data, MapData map, int left, int top, vec2
 }
 
 /// Displacement at a local uv of mip level `mip` of a tile; zero for a missing tile.
-vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
+vec3 fetch_displacement(const MapData map, const uint tile, const uint mip, const vec2 uv) {
     if (tile >= map.tile_count) return vec3(0.0);
     TextureData texture_data = textures[map.first_tile + mip * map.tile_count + tile];
     int width = int(texture_data.width);
@@ -93,7 +94,7 @@ vec3 fetch_displacement(MapData map, uint tile, uint mip, vec2 uv) {
 }
 
 /// Displaces interpolated attributes by mip level `mip` of the map.
-vec3 displace(SurfaceData s, VertexData base, uint mip) {
+vec3 displace(const SurfaceData s, const VertexData base, const uint mip) {
     if (s.map == kNone) return base.position;
     MapData map = maps[s.map];
     vec3 d = fetch_displacement(map, base.tile, mip, base.uv);
@@ -104,24 +105,25 @@ vec3 displace(SurfaceData s, VertexData base, uint mip) {
     return add_exact(base.position, offset);
 }
 
-vec3 blend_vectors(vec3 a, vec3 b, float s) { return vec3(blend(a.x, b.x, s), blend(a.y, b.y, s), blend(a.z, b.z, s)); }
-vec3 blend_quad_vectors(vec3 a, vec3 b, vec3 c, vec3 d, float u, float v) {
+vec3 blend_vectors(const vec3 a, const vec3 b, const float s) { return vec3(blend(a.x, b.x, s), blend(a.y, b.y, s),
+                   blend(a.z, b.z, s)); }
+vec3 blend_quad_vectors(const vec3 a, const vec3 b, const vec3 c, const vec3 d, const float u, const float v) {
     return vec3(blend_quad(a.x, b.x, c.x, d.x, u, v), blend_quad(a.y, b.y, c.y, d.y, u, v),
                 blend_quad(a.z, b.z, c.z, d.z, u, v));
 }
 
 layout(constant_id = kBicubicConstant) const uint kHasBicubic = 0;
 
-bool is_bicubic(SurfaceData s) { return kHasBicubic != 0u && s.first_control != kNone; }
+bool is_bicubic(const SurfaceData s) { return kHasBicubic != 0u && s.first_control != kNone; }
 
 /// Control point of a bicubic patch (formulas/control_points.h).
-vec3 load_control(SurfaceData s, uvec4 quad, uint patch_index, uint number) {
+vec3 load_control(const SurfaceData s, const uvec4 quad, const uint patch_index, const uint number) {
     if (number < 4u) return load_position(s, quad[number]);
     return load_position_at(s.first_control + kInnerControlCount * patch_index + number - 4u);
 }
 
 /// Point (u, v) of a bicubic base.
-vec3 evaluate_base(SurfaceData s, uvec4 quad, uint patch_index, float u, float v) {
+vec3 evaluate_base(const SurfaceData s, const uvec4 quad, const uint patch_index, const float u, const float v) {
     CubicWeights across = weigh_cubic(v);
     vec3 point[4];
     for (uint column = 0u; column < 4u; ++column) {
@@ -134,7 +136,8 @@ vec3 evaluate_base(SurfaceData s, uvec4 quad, uint patch_index, float u, float v
 }
 
 /// Derivative of a bicubic base along u, or along v where `direction` is 1.
-vec3 differentiate_base(SurfaceData s, uvec4 quad, uint patch_index, vec2 at, uint direction) {
+vec3 differentiate_base(const SurfaceData s, const uvec4 quad, const uint patch_index, const vec2 at,
+                        const uint direction) {
     CubicWeights weights = weigh_cubic(direction == 0u ? at.y : at.x);
     vec3 difference[3];
     for (uint k = 0u; k < 3u; ++k) {
@@ -158,7 +161,7 @@ struct EdgeLine {
 };
 
 /// Ends of the line at a uv seam: those of the side with the lower index.
-uvec2 find_override(SurfaceData s, uint patch_edge) {
+uvec2 find_override(const SurfaceData s, const uint patch_edge) {
     uint low = s.first_override;
     uint high = s.first_override + s.override_count - 1u;
     while (low < high) {
@@ -171,7 +174,7 @@ uvec2 find_override(SurfaceData s, uint patch_edge) {
     return texelFetch(overrides, int(low)).yz;
 }
 
-EdgeLine find_edge_line(SurfaceData s, uvec4 quad, uint patch_index, uint edge) {
+EdgeLine find_edge_line(const SurfaceData s, const uvec4 quad, const uint patch_index, const uint edge) {
     uint first = quad[edge];
     uint second = quad[(edge + 1u) & 3u];
     if (is_seam(s, patch_index, edge)) {
@@ -196,13 +199,13 @@ struct LinePlace {
     uint mip_place;   ///< of the patch's mips
 };
 
-LinePlace find_corner(SurfaceData s, uvec4 quad, uint k) {
+LinePlace find_corner(const SurfaceData s, const uvec4 quad, const uint k) {
     uint vertex = load_dominant(s, quad[k]);
     return LinePlace(vertex, vertex, 0.0, kNone, kNone, kMipCorners + k);
 }
 
 /// Corner of a grid of n x n cells that sample (i, j) is.
-uint find_grid_corner(uint i, uint j) { return j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u); }
+uint find_grid_corner(const uint i, const uint j) { return j == 0u ? (i == 0u ? 0u : 1u) : (i == 0u ? 3u : 2u); }
 
 /// A sample of an edge after snapping.
 struct EdgeSample {
@@ -212,7 +215,7 @@ struct EdgeSample {
 };
 
 /// Of sample i_j_edge.xy of edge i_j_edge.z, not a corner: the one rule that neighbours agree by.
-EdgeSample snap_edge_sample(uint packed_levels, uvec3 i_j_edge, bool is_reversed) {
+EdgeSample snap_edge_sample(const uint packed_levels, const uvec3 i_j_edge, const bool is_reversed) {
     uint level = packed_patch_level(packed_levels);
     uint n = 1u << level;
     uint edge = i_j_edge.z;
@@ -225,14 +228,15 @@ EdgeSample snap_edge_sample(uint packed_levels, uvec3 i_j_edge, bool is_reversed
 }
 
 /// A sample of edge i_j_edge.z, not a corner, before snapping.
-LinePlace find_edge_place(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uvec3 i_j_edge) {
+LinePlace find_edge_place(const SurfaceData s, const uvec4 quad, const uint patch_index, const uint packed_levels,
+                          const uvec3 i_j_edge) {
     EdgeLine line = find_edge_line(s, quad, patch_index, i_j_edge.z);
     EdgeSample moved = snap_edge_sample(packed_levels, i_j_edge, line.is_reversed);
     if (moved.corner != kNone) return find_corner(s, quad, moved.corner);
     return LinePlace(line.first, line.second, moved.s, moved.control, moved.end_control, kMipEdges + i_j_edge.z);
 }
 
-bool is_on_boundary(uint packed_levels, uint i, uint j) {
+bool is_on_boundary(const uint packed_levels, const uint i, const uint j) {
     uint n = 1u << packed_patch_level(packed_levels);
     return i == 0u || j == 0u || i == n || j == n;
 }

@@ -29,7 +29,7 @@ struct PatchVisit {
     bool has_hit;
 };
 
-vec3 read_tree_vertex(PatchVisit visit, uint i, uint j) {
+vec3 read_tree_vertex(const PatchVisit visit, uint i, uint j) {
     uint finer = visit.tree_level - visit.ray_level;
     if (visit.has_moved_edges) {
         uint edge = find_sample_edge(i, j, visit.ray_level);
@@ -45,14 +45,14 @@ vec3 read_tree_vertex(PatchVisit visit, uint i, uint j) {
     return vec3(uintBitsToFloat(pool[word]), uintBitsToFloat(pool[word + 1u]), uintBitsToFloat(pool[word + 2u]));
 }
 
-void offer_micro_hit(inout PatchVisit visit, float t, uint cell) {
+void offer_micro_hit(inout PatchVisit visit, const float t, const uint cell) {
     if (t > visit.t || (t == visit.t && visit.has_hit && cell > visit.cell)) return;
     visit.t = t;
     visit.cell = cell;
     visit.has_hit = true;
 }
 
-void intersect_micro_quad(inout PatchVisit visit, uint i, uint j) {
+void intersect_micro_quad(inout PatchVisit visit, const uint i, const uint j) {
     vec3 p00 = read_tree_vertex(visit, i, j);
     vec3 p10 = read_tree_vertex(visit, i + 1u, j);
     vec3 p11 = read_tree_vertex(visit, i + 1u, j + 1u);
@@ -77,7 +77,7 @@ void intersect_micro_quad(inout PatchVisit visit, uint i, uint j) {
     if (upper != kInfinity) offer_micro_hit(visit, upper, make_cell_rank(column, row, 1u));
 }
 
-bool is_node_met(PatchVisit visit, uint node) {
+bool is_node_met(const PatchVisit visit, const uint node) {
     uint word = visit.base + kTreeHeaderWords + kTreeNodeWords * node;
     vec3 lower, upper;
     for (uint k = 0u; k < 3u; ++k) {
@@ -89,7 +89,7 @@ bool is_node_met(PatchVisit visit, uint node) {
 }
 
 /// XOR mask for node indices; front-to-back order unless the patch is folded.
-uint choose_order(PatchVisit visit) {
+uint choose_order(const PatchVisit visit) {
     uint n = 1u << visit.ray_level;
     vec3 corner = read_tree_vertex(visit, 0u, 0u);
     vec3 along_u = read_tree_vertex(visit, n, 0u) - corner;
@@ -98,7 +98,7 @@ uint choose_order(PatchVisit visit) {
 }
 
 /// False if lavapipe ended the loop early, after 65535 iterations; the bound itself is never reached.
-bool walk_tree(inout PatchVisit visit, bool is_any) {
+bool walk_tree(inout PatchVisit visit, const bool is_any) {
     uint order = choose_order(visit);
     uint level = 0u;
     uint place = 0u; // index in traversal order within the level
@@ -124,7 +124,7 @@ bool walk_tree(inout PatchVisit visit, bool is_any) {
 }
 
 /// Rank among the ray's candidates of this round by (instance, patch); tiles of one patch share a rank.
-uint find_slot_rank(uint candidate_index, uint slots) {
+uint find_slot_rank(const uint candidate_index, const uint slots) {
     CandidateData own = candidates[candidate_index];
     uint first = candidate_index / slots * slots;
     uint rank = 0u;
@@ -135,7 +135,8 @@ uint find_slot_rank(uint candidate_index, uint slots) {
     return rank;
 }
 
-PatchVisit enter_tree(uint tree, CandidateData candidate, RayData world, uint patch_count, uint pool_capacity) {
+PatchVisit enter_tree(const uint tree, const CandidateData candidate, const RayData world, const uint patch_count,
+                      const uint pool_capacity) {
     PatchVisit visit;
     visit.base = trees[tree].address % pool_capacity * kPoolUnitWords;
     visit.tree_level = pool[visit.base + kTreeLevel];
@@ -163,7 +164,7 @@ PatchVisit enter_tree(uint tree, CandidateData candidate, RayData world, uint pa
 }
 
 /// Traces one pair; its tree must be in the pool.
-void trace_pair(uvec2 pair, CastPush push) {
+void trace_pair(const uvec2 pair, const CastPush push) {
     uint place = pair.y / push.slots;
     float t = nearest_distance(nearest[place]);
     CandidateData candidate = candidates[pair.y];

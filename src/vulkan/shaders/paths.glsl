@@ -39,7 +39,7 @@ layout(scalar, set = 0, binding = kBindPathList) buffer PathList { uint path_lis
 layout(scalar, set = 0, binding = kBindNextPathList) buffer NextPathList { uint next_path_list[]; };
 layout(scalar, set = 0, binding = kBindShadowList) buffer ShadowList { uint shadow_list[]; };
 
-bool is_hit(HitData hit) { return hit.instance != kNone; }
+bool is_hit(const HitData hit) { return hit.instance != kNone; }
 
 layout(constant_id = kLayersConstant) const uint kHasLayers = 0;
 layout(constant_id = kLightTreeConstant) const uint kHasLightTree = 0;
@@ -51,24 +51,24 @@ layout(constant_id = kAnisotropyConstant) const uint kHasAnisotropy = 0;
 layout(constant_id = kShadowCatchersConstant) const uint kHasShadowCatchers = 0;
 
 /// Whether what a ray has met after `depth` bounces is a shadow catcher that the camera sees.
-bool is_catcher(HitData hit, uint depth) {
+bool is_catcher(const HitData hit, const uint depth) {
     return kHasShadowCatchers != 0u && depth == 0u && (instances[hit.instance].levels & kShadowCatcher) != 0u;
 }
 
 /// What the textures of a path's material made of its numbers, if it has some; behind all points.
-uint find_point_numbers(uint capacity, uint path_index) {
+uint find_point_numbers(const uint capacity, const uint path_index) {
     return capacity * kSurfacePointWords / kInputWords + 1u + path_index;
 }
 
 /// First word of the tangent at a path's point, if its material is anisotropic; behind all of these.
-uint find_point_tangent(uint capacity, uint path_index) {
+uint find_point_tangent(const uint capacity, const uint path_index) {
     uint first = kHasInputTextures != 0u ? find_point_numbers(capacity, capacity) * kInputWords
                                          : capacity * kSurfacePointWords;
     return first + 3u * path_index;
 }
 
 /// Without a trace of anisotropy where there is none.
-MaterialData load_material_numbers(uint index) {
+MaterialData load_material_numbers(const uint index) {
     MaterialData material = materials[index];
     if (kHasAnisotropy != 0u) return material;
     material.layers.specular_anisotropy = 0.0;
@@ -79,7 +79,7 @@ MaterialData load_material_numbers(uint index) {
 }
 
 /// Of load_material_numbers().
-bool is_anisotropic(MaterialData material) {
+bool is_anisotropic(const MaterialData material) {
     return (material.has_layers != 0u && material.layers.azimuth_scale > 0.0) ||
            (material.has_glass != 0u && material.glass.anisotropy > 0.0);
 }
@@ -91,14 +91,14 @@ struct VertexMaterial {
     vec3 tangent;     ///< of anisotropic ones
 };
 
-vec3 load_point_tangent(uint capacity, uint path_index) {
+vec3 load_point_tangent(const uint capacity, const uint path_index) {
     uint first = find_point_tangent(capacity, path_index);
     return vec3(point_tangents[first], point_tangents[first + 1u], point_tangents[first + 2u]);
 }
 
 layout(scalar, set = 0, binding = kBindMaterials) readonly buffer VertexInputs { MaterialInputData vertex_inputs[]; };
 
-VertexMaterial load_vertex_material(uint index, uint capacity, uint path_index) {
+VertexMaterial load_vertex_material(const uint index, const uint capacity, const uint path_index) {
     VertexMaterial material;
     material.numbers = load_material_numbers(index);
     material.table = make_layer_table(kGridTable);
@@ -124,7 +124,7 @@ VertexMaterial load_vertex_material(uint index, uint capacity, uint path_index) 
 }
 
 /// Shadow catchers are white and diffuse, so that nothing but light and its cosine counts.
-VertexMaterial load_lit_material(uint path_index, HitData hit, uint capacity, uint depth) {
+VertexMaterial load_lit_material(const uint path_index, const HitData hit, const uint capacity, const uint depth) {
     uint index = instances[hit.instance].material;
     if (!is_catcher(hit, depth)) return load_vertex_material(index, capacity, path_index);
     VertexMaterial white;
@@ -151,17 +151,17 @@ struct Scattering {
 };
 
 /// Whether a surface may send light on to its other side, besides straight through.
-bool is_see_through(MaterialData material) {
+bool is_see_through(const MaterialData material) {
     return kHasGlass != 0u && material.has_glass != 0u && material.glass.kind < kClearWall;
 }
 
 /// What a surface that is partly glass is at a vertex; `u` picks.
-GlassDraw draw_vertex_glass(SurfacePointData point, MaterialData material, vec3 wo, float u) {
+GlassDraw draw_vertex_glass(const SurfacePointData point, const MaterialData material, const vec3 wo, const float u) {
     return draw_glass(material.glass, point.metallic, abs(dot(point.geometric_normal, wo)), u);
 }
 
 /// `u_pick`: a random number in [0, 1), the same for all that is asked of a vertex.
-Scattering make_scattering(SurfacePointData point, VertexMaterial at, vec3 wo, float u_pick) {
+Scattering make_scattering(SurfacePointData point, const VertexMaterial at, const vec3 wo, const float u_pick) {
     MaterialData material = at.numbers;
     Scattering result;
     result.table = at.table;
@@ -193,14 +193,14 @@ Scattering make_scattering(SurfacePointData point, VertexMaterial at, vec3 wo, f
     return result;
 }
 
-BsdfValue evaluate_scattering(Scattering scattering, vec3 wi) {
+BsdfValue evaluate_scattering(const Scattering scattering, const vec3 wi) {
     if (scattering.is_glass) return evaluate_glass_bsdf(scattering.glass, scattering.wo_local, wi);
     if (scattering.has_layers) return evaluate_layered_bsdf(scattering.layered, scattering.table, scattering.wo_local, wi);
     return evaluate_bsdf(scattering.bsdf, scattering.wo_local, wi);
 }
 
 /// Of it by way of the BSDF, what is diffuse, and the lobe of the rest.
-LightShares find_light_shares(Scattering scattering, vec3 wi, vec3 whole) {
+LightShares find_light_shares(const Scattering scattering, const vec3 wi, const vec3 whole) {
     LightShares shares = {vec3(0.0), wi.z < 0.0 ? kLobeTransmission : kLobeSpecular};
     if (scattering.is_glass) return shares;
     vec3 diffuse = scattering.has_layers
@@ -210,7 +210,7 @@ LightShares find_light_shares(Scattering scattering, vec3 wi, vec3 whole) {
     return shares;
 }
 
-BsdfSample sample_scattering(Scattering scattering, vec2 u) {
+BsdfSample sample_scattering(const Scattering scattering, const vec2 u) {
     float u_lobe = scattering.u_lobe;
     if (scattering.is_glass) return sample_glass_bsdf(scattering.glass, scattering.wo_local, u_lobe, u);
     if (scattering.has_layers)
@@ -220,14 +220,15 @@ BsdfSample sample_scattering(Scattering scattering, vec2 u) {
 
 /// Whether light along `direction` is on one side of the surface and of the shading normal; above, of all but
 /// glass. `local`: the direction in the frame of the scattering.
-bool is_on_one_side(Scattering scattering, SurfacePointData point, vec3 direction, vec3 local) {
+bool is_on_one_side(const Scattering scattering, const SurfacePointData point, const vec3 direction, const vec3 local) {
     float height = dot(point.geometric_normal, direction);
     if (!scattering.is_glass) return height > 0.0;
     return (height > 0.0 && local.z > 0.0) || (height < 0.0 && local.z < 0.0);
 }
 
 /// The body that a ray leaves a vertex into; path.body lies before the surface.
-uint find_next_body(PathData path, Scattering scattering, SurfacePointData point, uint material_index, vec3 direction) {
+uint find_next_body(const PathData path, const Scattering scattering, const SurfacePointData point,
+                    const uint material_index, const vec3 direction) {
     if (kHasGlass == 0u) return kNone;
     bool is_through = scattering.is_glass && dot(point.geometric_normal, direction) < 0.0;
     if (!is_through || materials[material_index].glass.kind != kSolidGlass) return path.body;

@@ -10,7 +10,7 @@ layout(scalar, push_constant) uniform Push { ArgumentsPush push; };
 
 const uint kMostGroups = 65535u;
 
-void write_groups(uint place, uint items, uint items_per_group) {
+void write_groups(const uint place, const uint items, const uint items_per_group) {
     uint groups = (items + items_per_group - 1u) / items_per_group;
     uint rows = (groups + kMostGroups - 1u) / kMostGroups;
     uint word = kArgumentWords * place;

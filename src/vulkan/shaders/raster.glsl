@@ -9,10 +9,10 @@ layout(scalar, push_constant) uniform Push { RasterPush push; };
 layout(scalar, set = 0, binding = kBindRasterItems) readonly buffer Items { RasterItem items[]; };
 
 /// Cells per row; one less than vertices per row.
-uint count_columns(RasterItem item) { return 1u << packed_patch_level(item.levels); }
+uint count_columns(const RasterItem item) { return 1u << packed_patch_level(item.levels); }
 
 /// The item that a cell of the wave belongs to.
-uint find_item(uint number) {
+uint find_item(const uint number) {
     uint low = 0u;
     uint high = push.item_count - 1u;
     while (low < high) {
@@ -31,7 +31,7 @@ struct RasterCell {
     uint column, row;
 };
 
-RasterCell make_cell(uint item_index, uint number) {
+RasterCell make_cell(const uint item_index, const uint number) {
     RasterCell cell;
     cell.item = items[item_index];
     uint place = number - cell.item.first_cell;
@@ -48,7 +48,7 @@ struct CellCorners {
     vec3 p00, p10, p11, p01;
 };
 
-CellCorners load_cell(RasterCell cell) {
+CellCorners load_cell(const RasterCell cell) {
     uint stride = count_columns(cell.item) + 1u;
     uint first = cell.item.first_vertex + cell.row * stride + cell.column;
     return CellCorners(raster_vertices[first], raster_vertices[first + 1u], raster_vertices[first + stride + 1u],

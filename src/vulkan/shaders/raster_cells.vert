@@ -6,12 +6,12 @@
 
 layout(location = 0) flat out uvec2 item_and_cell;
 
-vec3 bound_vector(AffineData a, vec3 v) {
+vec3 bound_vector(const AffineData a, const vec3 v) {
     return vec3(dot(abs(a.x), abs(v)), dot(abs(a.y), abs(v)), dot(abs(a.z), abs(v)));
 }
 
 /// Camera in object space. Its scale does not affect the projection, only the range of floats.
-ObjectCamera enter_camera(InstanceData instance) {
+ObjectCamera enter_camera(const InstanceData instance) {
     AffineData m = instance.object_from_origin;
     vec3 reach = abs(push.corner) + float(push.x0 + push.width) * abs(push.step_x) +
                  float(push.y0 + push.height) * abs(push.step_y);
@@ -27,7 +27,7 @@ ObjectCamera enter_camera(InstanceData instance) {
 
 /// In pixels of the drawn region, with a margin: the ray of a pixel may pass through any point of it, but fragments are
 /// generated only where the centre is covered.
-vec4 place_on_window(ScreenBox box) {
+vec4 place_on_window(const ScreenBox box) {
     vec2 origin = vec2(float(push.x0), float(push.y0 + push.first_row));
     vec2 size = vec2(float(push.width), float(push.row_count));
     vec2 lower = clamp(vec2(box.x0, box.y0) - origin - 1.0, vec2(0.0), size);

@@ -6,7 +6,7 @@
 
 layout(scalar, set = 0, binding = kBindRasterNearest) buffer RasterNearest { uint64_t raster_nearest[]; };
 
-vec2 find_place(RasterCell cell, RayData world, uint is_upper) {
+vec2 find_place(const RasterCell cell, const RayData world, const uint is_upper) {
     CellCorners corners = load_cell(cell);
     ObjectRay ray = enter_object(world, instances[cell.item.instance]);
     vec3 a = shear_vertex(ray, corners.p00);

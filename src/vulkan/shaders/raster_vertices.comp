@@ -5,7 +5,7 @@
 
 layout(scalar, set = 0, binding = kBindRasterVertices) writeonly buffer Vertices { vec3 raster_vertices[]; };
 
-RasterItem find_item_of_vertex(uint vertex) {
+RasterItem find_item_of_vertex(const uint vertex) {
     uint low = 0u;
     uint high = push.item_count - 1u;
     while (low < high) {
@@ -19,7 +19,7 @@ RasterItem find_item_of_vertex(uint vertex) {
 }
 
 /// The upper triangle of a polygon with three corners is degenerate: no ray hits it.
-vec3 load_polygon_corner(SurfaceData s, uint patch_index, uint i, uint j) {
+vec3 load_polygon_corner(const SurfaceData s, const uint patch_index, const uint i, const uint j) {
     return load_position(s, load_quad(s, patch_index)[j == 0u ? i : 3u - i]);
 }
 

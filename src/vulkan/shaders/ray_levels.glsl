@@ -9,7 +9,7 @@ layout(scalar, push_constant) uniform Push { CastPush push; };
 layout(constant_id = kRayLodConstant) const uint kHasRayLod = 0;
 
 /// Packed levels of a patch of an instance for a ray.
-uint choose_levels(uint ray_index, uint instance_index, uint patch_index) {
+uint choose_levels(const uint ray_index, const uint instance_index, const uint patch_index) {
     InstanceData instance = instances[instance_index];
     RayData world = rays[ray_index];
     uint levels = lower_packed_levels(find_levels(instance, patch_index), world.lod_bias);

@@ -33,7 +33,7 @@ layout(scalar, set = 0, binding = kBindBuilds) buffer Builds { uint builds[]; };
     } while (false)
 #endif
 
-ObjectRay enter_object(RayData ray, InstanceData instance) {
+ObjectRay enter_object(const RayData ray, const InstanceData instance) {
     LocalStart start = find_local_start(ray.origin, ray.direction, instance.origin, instance.world_from_object.t,
                                         instance.reach);
     ObjectRay result = make_object_ray(transform_point(instance.object_from_origin, start.origin),
@@ -42,11 +42,11 @@ ObjectRay enter_object(RayData ray, InstanceData instance) {
     return result;
 }
 
-uint64_t make_nearest(float t, uint rank) { return uint64_t(order_float(t)) << 32 | uint64_t(rank); }
-float nearest_distance(uint64_t packed_hit) { return unorder_float(uint(packed_hit >> 32)); }
+uint64_t make_nearest(const float t, const uint rank) { return uint64_t(order_float(t)) << 32 | uint64_t(rank); }
+float nearest_distance(const uint64_t packed_hit) { return unorder_float(uint(packed_hit >> 32)); }
 
 /// Ties go to the lower instance, then the lower patch, then the lower cell.
-bool is_better(HitData a, HitData b) {
+bool is_better(const HitData a, const HitData b) {
     if (b.instance == kNone || a.t != b.t) return b.instance == kNone || a.t < b.t;
     if (a.instance != b.instance) return a.instance < b.instance;
     if (a.patch_index != b.patch_index) return a.patch_index < b.patch_index;
@@ -54,12 +54,12 @@ bool is_better(HitData a, HitData b) {
 }
 
 /// Position in a cell from weights (b, c) of its lower triangle 00 10 11 or its upper one 00 11 01.
-vec2 place_in_cell(vec2 weights, uint is_upper) {
+vec2 place_in_cell(const vec2 weights, const uint is_upper) {
     return is_upper != 0u ? vec2(weights.x, weights.x + weights.y) : vec2(weights.x + weights.y, weights.y);
 }
 
 /// Position on a patch of `level` from the position in one of its cells.
-vec2 place_on_patch(uint cell, uint level, vec2 within) {
+vec2 place_on_patch(const uint cell, const uint level, const vec2 within) {
     precise float cell_size = 1.0 / float(1u << level);
     precise vec2 uv = (vec2(cell_column(cell), cell_row(cell)) + within) * cell_size;
     return uv;

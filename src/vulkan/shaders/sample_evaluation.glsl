@@ -16,25 +16,25 @@ struct SamplePlace {
 };
 
 /// In the order in which vertices are added up: row by row.
-uint get_vertex(SamplePlace place, uint k) { return place.vertices[k ^ (k >> 1u)]; }
-uint count_vertices(SamplePlace place) { return place.is_line ? 2u : 4u; }
+uint get_vertex(const SamplePlace place, const uint k) { return place.vertices[k ^ (k >> 1u)]; }
+uint count_vertices(const SamplePlace place) { return place.is_line ? 2u : 4u; }
 
 /// The sum of a row with one vertex more: blend().
-vec3 add_to_row(vec3 row, vec3 value, SamplePlace place, uint k) {
+vec3 add_to_row(const vec3 row, const vec3 value, const SamplePlace place, const uint k) {
     bool is_first = (k & 1u) == 0u;
     vec3 term = scale_exact(value, is_first ? 1.0 - place.at.x : place.at.x);
     return is_first ? term : add_exact(row, term);
 }
 
 /// The sum of both rows behind vertex `k`, or that of the line: blend_quad() or blend().
-vec3 add_row(vec3 sum, vec3 row, SamplePlace place, uint k) {
+vec3 add_row(const vec3 sum, const vec3 row, const SamplePlace place, const uint k) {
     if (place.is_line) return row;
     if ((k & 1u) == 0u) return sum;
     vec3 term = scale_exact(row, k == 1u ? 1.0 - place.at.y : place.at.y);
     return k == 1u ? term : add_exact(sum, term);
 }
 
-vec3 blend_positions(SurfaceData s, SamplePlace place) {
+vec3 blend_positions(const SurfaceData s, const SamplePlace place) {
     vec3 row = vec3(0.0);
     vec3 sum = vec3(0.0);
     for (uint k = 0u; k < count_vertices(place); ++k) {
@@ -44,7 +44,7 @@ vec3 blend_positions(SurfaceData s, SamplePlace place) {
     return sum;
 }
 
-vec2 blend_uvs(SurfaceData s, SamplePlace place) {
+vec2 blend_uvs(const SurfaceData s, const SamplePlace place) {
     vec3 row = vec3(0.0);
     vec3 sum = vec3(0.0);
     if (s.first_uv == kNone) return vec2(0.0);
@@ -55,7 +55,7 @@ vec2 blend_uvs(SurfaceData s, SamplePlace place) {
     return sum.xy;
 }
 
-TangentFrame blend_frames(SurfaceData s, SamplePlace place) {
+TangentFrame blend_frames(const SurfaceData s, const SamplePlace place) {
     TangentFrame row = TangentFrame(vec3(0.0), vec3(0.0), vec3(0.0));
     TangentFrame sum = row;
     for (uint k = 0u; k < count_vertices(place); ++k) {
@@ -71,7 +71,7 @@ TangentFrame blend_frames(SurfaceData s, SamplePlace place) {
 }
 
 /// evaluate_base(), column by column: the outer ones first, as blend_cubic() adds.
-vec3 sum_base(SurfaceData s, uvec4 quad, uint patch_index, vec2 at) {
+vec3 sum_base(const SurfaceData s, const uvec4 quad, const uint patch_index, const vec2 at) {
     CubicWeights across = weigh_cubic(at.y);
     CubicWeights along = weigh_cubic(at.x);
     vec3 ends = vec3(0.0);
@@ -94,7 +94,7 @@ vec3 sum_base(SurfaceData s, uvec4 quad, uint patch_index, vec2 at) {
     return add_exact(ends, inner);
 }
 
-vec3 find_undisplaced(SurfaceData s, uvec4 quad, uint patch_index, SamplePlace place) {
+vec3 find_undisplaced(const SurfaceData s, const uvec4 quad, const uint patch_index, const SamplePlace place) {
     if (!is_bicubic(s) || (place.is_line && place.controls.x == kNone)) return blend_positions(s, place);
     if (!place.is_line) return sum_base(s, quad, patch_index, place.at);
     return blend_cubic_vectors(load_position(s, place.vertices.x), load_control(s, quad, patch_index, place.controls.x),
@@ -102,13 +102,14 @@ vec3 find_undisplaced(SurfaceData s, uvec4 quad, uint patch_index, SamplePlace p
                                weigh_cubic(place.at.x));
 }
 
-SamplePlace make_line_place(LinePlace line) {
+SamplePlace make_line_place(const LinePlace line) {
     return SamplePlace(uvec4(line.first, line.second, 0u, 0u), vec2(line.s, 0.0), true,
                        uvec2(line.control, line.end_control), line.mip_place);
 }
 
 /// Of sample (i, j) of a patch.
-SamplePlace place_sample(SurfaceData s, uvec4 quad, uint patch_index, uint packed_levels, uint i, uint j) {
+SamplePlace place_sample(const SurfaceData s, const uvec4 quad, const uint patch_index, const uint packed_levels,
+                         const uint i, const uint j) {
     uint level = packed_patch_level(packed_levels);
     uint n = 1u << level;
     bool is_on_u_edge = j == 0u || j == n;
@@ -123,7 +124,7 @@ SamplePlace place_sample(SurfaceData s, uvec4 quad, uint patch_index, uint packe
 }
 
 /// Sample (i, j) of a patch at its levels, object space: the definition of the surface.
-vec3 find_sample(SurfaceData s, uint patch_index, uint packed_levels, uint i, uint j) {
+vec3 find_sample(const SurfaceData s, const uint patch_index, const uint packed_levels, const uint i, const uint j) {
     uvec4 quad = load_quad(s, patch_index);
     SamplePlace place = place_sample(s, quad, patch_index, packed_levels, i, j);
     vec3 position = find_undisplaced(s, quad, patch_index, place);

@@ -37,36 +37,37 @@ layout(constant_id = kSmoothConstant) const uint kHasSmooth = 0;
 #define kInfinity uintBitsToFloat(0x7f800000u)
 const uint kNoTile = 255u;
 
-vec3 load_position_at(uint place) {
+vec3 load_position_at(const uint place) {
     int first = int(3u * place);
     return vec3(texelFetch(positions, first).x, texelFetch(positions, first + 1).x,
                 texelFetch(positions, first + 2).x);
 }
 
-vec3 load_position(SurfaceData s, uint vertex) { return load_position_at(s.first_vertex + vertex); }
+vec3 load_position(const SurfaceData s, const uint vertex) { return load_position_at(s.first_vertex + vertex); }
 
-vec2 load_uv(SurfaceData s, uint vertex) { return texelFetch(uvs, int(s.first_uv + vertex)).xy; }
+vec2 load_uv(const SurfaceData s, const uint vertex) { return texelFetch(uvs, int(s.first_uv + vertex)).xy; }
 
-uvec4 load_quad(SurfaceData s, uint patch_index) { return texelFetch(quads, int(s.first_quad + patch_index)); }
+uvec4 load_quad(const SurfaceData s, const uint patch_index) { return texelFetch(quads,
+                int(s.first_quad + patch_index)); }
 
-bool is_triangle(uvec4 quad) { return quad.w == quad.z; }
+bool is_triangle(const uvec4 quad) { return quad.w == quad.z; }
 
 /// Unit normal; not for surfaces without frames.
-vec3 load_normal(SurfaceData s, uint vertex) {
+vec3 load_normal(const SurfaceData s, const uint vertex) {
     return unpack_unit_normal(texelFetch(frames, int(s.first_frame + vertex)).x);
 }
 
-uint load_dominant(SurfaceData s, uint vertex) {
+uint load_dominant(const SurfaceData s, const uint vertex) {
     return s.first_dominant == kNone ? vertex : texelFetch(dominants, int(s.first_dominant + vertex)).x;
 }
 
-uint load_vertex_tile(SurfaceData s, uint vertex) {
+uint load_vertex_tile(const SurfaceData s, const uint vertex) {
     if (s.first_vertex_tile == kNone) return 0u;
     uint place = s.first_vertex_tile + vertex;
     return (texelFetch(vertex_tiles, int(place >> 2u)).x >> (8u * (place & 3u))) & 255u;
 }
 
-bool is_seam(SurfaceData s, uint patch_index, uint edge) {
+bool is_seam(const SurfaceData s, const uint patch_index, const uint edge) {
     if (s.first_override_word == kNone) return false;
     uint patch_edge = 4u * patch_index + edge;
     uint word = texelFetch(override_bits, int(s.first_override_word + (patch_edge >> 5u))).x;
@@ -74,34 +75,34 @@ bool is_seam(SurfaceData s, uint patch_index, uint edge) {
 }
 
 /// Packed mip levels that a patch reads.
-uint load_mips(SurfaceData s, uint patch_index) {
+uint load_mips(const SurfaceData s, const uint patch_index) {
     return s.first_mip == kNone ? 0u : texelFetch(override_bits, int(s.first_mip + patch_index)).x;
 }
 
 /// Packed levels of a patch of an instance, without LOD bias.
-uint find_levels(InstanceData instance, uint patch_index) {
+uint find_levels(const InstanceData instance, const uint patch_index) {
     uint levels = instance.levels & ~(kManyLevels | kMirrored | kShadowCatcher);
     if ((instance.levels & kManyLevels) == 0u) return levels;
     return texelFetch(field_levels, int(levels + patch_index)).x;
 }
 
 /// Texel (x, y); must lie inside the texture.
-vec4 load_texel(TextureData texture_data, uint x, uint y) {
+vec4 load_texel(const TextureData texture_data, const uint x, const uint y) {
     int place = int(texture_data.first_texel + y * texture_data.width + x);
     return texture_data.is_half != 0u ? texelFetch(half_texels, place) : texelFetch(float_texels, place);
 }
 
-vec3 blend_cubic_vectors(vec3 a, vec3 b, vec3 c, vec3 d, CubicWeights weights) {
+vec3 blend_cubic_vectors(const vec3 a, const vec3 b, const vec3 c, const vec3 d, const CubicWeights weights) {
     return vec3(blend_cubic(a.x, b.x, c.x, d.x, weights), blend_cubic(a.y, b.y, c.y, d.y, weights),
                 blend_cubic(a.z, b.z, c.z, d.z, weights));
 }
 
-vec3 transform_vector(AffineData a, vec3 v) {
+vec3 transform_vector(const AffineData a, const vec3 v) {
     return vec3(dot_exact(a.x, v), dot_exact(a.y, v), dot_exact(a.z, v));
 }
-vec3 transform_point(AffineData a, vec3 p) { return add_exact(transform_vector(a, p), a.t); }
+vec3 transform_point(const AffineData a, const vec3 p) { return add_exact(transform_vector(a, p), a.t); }
 /// Not normalised.
-vec3 transform_normal(AffineData inverse, vec3 n) {
+vec3 transform_normal(const AffineData inverse, const vec3 n) {
     return inverse.x * n.x + inverse.y * n.y + inverse.z * n.z;
 }
 

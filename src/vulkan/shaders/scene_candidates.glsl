@@ -48,17 +48,17 @@ float find_limit() {
     return (kCollects != 0u ? best_t : min(best_t, slots[kMostSlots - 1u].entry)) * kBoxSlack;
 }
 
-bool is_after(float entry, uint at_instance, uint tree, CursorData mark) {
+bool is_after(const float entry, const uint at_instance, const uint tree, const CursorData mark) {
     if (entry != mark.entry) return entry > mark.entry;
     if (at_instance != mark.instance) return at_instance > mark.instance;
     return tree > mark.tree;
 }
 
-bool is_slot_after(Slot slot, Slot other) {
+bool is_slot_after(const Slot slot, const Slot other) {
     return is_after(slot.entry, slot.instance, slot.tree, CursorData(other.entry, other.instance, other.tree));
 }
 
-bool is_offered(uint tree) {
+bool is_offered(const uint tree) {
     bool is_there = false;
     for (uint k = 0u; k < kMostSlots; ++k)
         is_there = is_there || (slots[k].tree == tree && slots[k].instance == instance_index);
@@ -66,7 +66,7 @@ bool is_offered(uint tree) {
 }
 
 /// Inserts a tree of this instance if it follows the cursor and is among the nearest so far.
-void offer_candidate(uint tree, float entry) {
+void offer_candidate(const uint tree, const float entry) {
     if (push.round > 0u && !is_after(entry, instance_index, tree, cursors[ray_index])) return;
     if (kCollects != 0u) {
         if (collected < push.slots)
@@ -88,7 +88,7 @@ void offer_candidate(uint tree, float entry) {
 }
 
 /// Root of the tree over the tiles of a patch; kNone if the host has not built it yet.
-uint find_directory(uint patch_number, uint levels) {
+uint find_directory(const uint patch_number, const uint levels) {
     uint place = hash_directory(patch_number, levels) & push.directory_mask;
     while (directories[place].patch_number != kNone) {
         if (directories[place].patch_number == patch_number && directories[place].levels == levels)
@@ -99,7 +99,7 @@ uint find_directory(uint patch_number, uint levels) {
 }
 
 /// Requests tiles from the host, in few rounds: a hashed bit marks patches; colliding ones come in a later round.
-void request_tiles(uint patch_number, RequestData request) {
+void request_tiles(const uint patch_number, const RequestData request) {
     uint bit = hash_directory(patch_number, request.levels) & (kRequestBits - 1u);
     uint mask = 1u << (bit & 31u);
     is_blocked = true;
@@ -109,9 +109,9 @@ void request_tiles(uint patch_number, RequestData request) {
 }
 
 /// Traverses the tree over the tiles of a patch; `entry` is that of the patch.
-void enter_tiles(uint root, float entry);
+void enter_tiles(const uint root, const float entry);
 
-void enter_patch(uint patch_index, float entry) {
+void enter_patch(const uint patch_index, const float entry) {
     uint patch_number = surfaces[instances[instance_index].surface].first_quad + patch_index;
     uint levels = kHasTiles == 0u ? 0u : choose_levels(ray_index, instance_index, patch_index);
     if (packed_patch_level(levels) <= kTreeLevels) {
@@ -125,7 +125,7 @@ void enter_patch(uint patch_index, float entry) {
         request_tiles(patch_number, RequestData(instance_index, patch_index, levels));
 }
 
-void offer_hit(HitData hit) {
+void offer_hit(const HitData hit) {
     if (has_hit && !is_better(hit, hits[ray_index])) return;
     hits[ray_index] = hit;
     best_t = hit.t;
@@ -133,7 +133,7 @@ void offer_hit(HitData hit) {
 }
 
 /// One half of a quad after the other.
-void intersect_polygon(uint patch_index) {
+void intersect_polygon(const uint patch_index) {
     if (kHasPolygons == 0u) return;
     SurfaceData s = surfaces[instances[instance_index].surface];
     uvec4 quad = load_quad(s, patch_index);
@@ -152,23 +152,23 @@ void intersect_polygon(uint patch_index) {
 }
 
 /// Independent of what this round has found so far.
-bool is_wanted_at_all(BoxInterval interval, float entry) {
+bool is_wanted_at_all(const BoxInterval interval, const float entry) {
     if (!is_box_met(interval)) return false;
     if (push.round == 0u || instance_index == kNone) return true;
     return max(interval.exit, entry) * kBoxSlack >= cursors[ray_index].entry;
 }
 
 /// `entry`: at least that of every ancestor, so that skipped candidates follow all offered ones.
-bool is_wanted(BoxInterval interval, float entry) {
+bool is_wanted(const BoxInterval interval, const float entry) {
     return entry <= find_limit() && is_wanted_at_all(interval, entry);
 }
 
 /// Whether the instance is neither empty nor masked.
-bool is_instance_seen(uint index) {
+bool is_instance_seen(const uint index) {
     return instances[index].root != kNone && (instances[index].visibility_mask & push.visibility_mask) != 0u;
 }
 
-void enter_instance(uint index) {
+void enter_instance(const uint index) {
     instance_index = index;
     ray = enter_object(rays[ray_index], instances[index]);
 }
@@ -182,7 +182,7 @@ void leave_instance() {
 bool walk();
 
 /// Takes `count` places in the list of pairs: one atomic operation for all lanes that do so together.
-uint take_pairs(uint count) {
+uint take_pairs(const uint count) {
 #ifdef FULL_SCREEN
     return atomicAdd(counters.pair_count, count);
 #else
@@ -195,7 +195,7 @@ uint take_pairs(uint count) {
 }
 
 /// Emits pairs for the candidates in the slots; see find_jobs.comp for what they lack. None: a ray that is done, or waits.
-void emit_slots(bool is_none) {
+void emit_slots(const bool is_none) {
     uint count = 0u;
     for (uint k = 0u; k < kMostSlots; ++k)
         if (slots[k].tree != kNone) ++count;
@@ -217,7 +217,7 @@ void emit_slots(bool is_none) {
 }
 
 /// The same for what was collected.
-void emit_collected(bool is_none) {
+void emit_collected(const bool is_none) {
     bool is_overflown = collected > push.slots;
     uint count = is_none || is_overflown ? 0u : collected;
     uint pair = take_pairs(count);
@@ -226,7 +226,7 @@ void emit_collected(bool is_none) {
     if (count == 0u) candidates[first_candidate].tree = is_overflown && !is_none ? kOverflown : 0u;
 }
 
-void emit_candidates(bool is_done) {
+void emit_candidates(const bool is_done) {
     if (kCollects != 0u)
         emit_collected(is_done || is_blocked);
     else
@@ -234,7 +234,7 @@ void emit_candidates(bool is_done) {
     if (is_blocked) candidates[first_candidate].tree = kNone;
 }
 
-bool is_waiting(uint place) {
+bool is_waiting(const uint place) {
     return candidates[place * push.slots].instance == kNone && candidates[place * push.slots].tree == kNone;
 }
 

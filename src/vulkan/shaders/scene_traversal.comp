@@ -9,7 +9,7 @@ const bool kMayOfferTwice = false;
 #include "vulkan/shaders/node_stack.glsl"
 
 /// Tile directories are traversed on the same stack.
-void enter_tiles(uint root, float entry) { push_node(root, entry); }
+void enter_tiles(const uint root, const float entry) { push_node(root, entry); }
 
 /// False if the device ended the loop before the stack was empty.
 bool walk() {

@@ -25,7 +25,7 @@ struct Appearance {
 };
 
 /// What textures of other inputs, and those with a place of their own, add.
-void apply_inputs(MaterialInputData inputs, TexturePlace place, inout Appearance appearance) {
+void apply_inputs(const MaterialInputData inputs, const TexturePlace place, inout Appearance appearance) {
     InputNumbers numbers = inputs.numbers;
     numbers.word[kInputBaseColor] = appearance.base_color.x;
     numbers.word[kInputBaseColor + 1u] = appearance.base_color.y;
@@ -44,7 +44,7 @@ void apply_inputs(MaterialInputData inputs, TexturePlace place, inout Appearance
     appearance.numbers = numbers;
 }
 
-void apply_material(MaterialData material, TexturePlace place, inout Appearance appearance) {
+void apply_material(const MaterialData material, const TexturePlace place, inout Appearance appearance) {
     uint indices[4] = {material.color_texture, material.roughness_texture, material.metallic_texture,
                        material.normal_texture};
     vec3 values[4] = {vec3(1.0), vec3(1.0), vec3(1.0), vec3(1.0)};
@@ -61,7 +61,7 @@ void apply_material(MaterialData material, TexturePlace place, inout Appearance 
 }
 
 /// As cpu/shading/normal_maps.cpp; `normal` on the side of the winding.
-vec3 find_tangent(InstanceData instance, HitData hit, uvec4 quad, vec3 normal) {
+vec3 find_tangent(const InstanceData instance, const HitData hit, const uvec4 quad, const vec3 normal) {
     SurfaceData s = surfaces[instance.surface];
     vec2 at = vec2(hit.u, hit.v);
     int first = int(s.first_tangent + 4u * hit.patch_index);
@@ -75,7 +75,8 @@ vec3 find_tangent(InstanceData instance, HitData hit, uvec4 quad, vec3 normal) {
 }
 
 /// `tangent` is that of `normal`.
-vec3 apply_normal_map(MaterialData material, InstanceData instance, HitData hit, vec3 tangent, vec3 texel, vec3 normal) {
+vec3 apply_normal_map(const MaterialData material, const InstanceData instance, const HitData hit, const vec3 tangent,
+                      const vec3 texel, const vec3 normal) {
     int first = int(surfaces[instance.surface].first_tangent + 4u * hit.patch_index);
     bool is_turned = (texelFetch(override_bits, first).x & 1u) != 0u;
     bool is_mirrored = (instance.levels & kMirrored) != 0u;
@@ -83,7 +84,7 @@ vec3 apply_normal_map(MaterialData material, InstanceData instance, HitData hit,
                       decode_normal(texel, material.normal_scale));
 }
 
-Appearance find_appearance(HitData hit, vec3 geometric_normal, bool is_flipped) {
+Appearance find_appearance(const HitData hit, const vec3 geometric_normal, const bool is_flipped) {
     InstanceData instance = instances[hit.instance];
     SurfaceData s = surfaces[instance.surface];
     uvec4 quad = load_quad(s, hit.patch_index);

@@ -7,13 +7,13 @@
 #include "formulas/warp.h"
 #include "formulas/shading_normal.h"
 
-vec3 blend_normals(SurfaceData s, uvec4 quad, vec2 at) {
+vec3 blend_normals(const SurfaceData s, const uvec4 quad, const vec2 at) {
     return interpolate_quad(load_normal(s, quad.x), load_normal(s, quad.y), load_normal(s, quad.z),
                             load_normal(s, quad.w), at);
 }
 
 /// Normal of an undisplaced patch.
-vec3 compute_plain_normal(SurfaceData s, uvec4 quad, vec2 at) {
+vec3 compute_plain_normal(const SurfaceData s, const uvec4 quad, const vec2 at) {
     bool is_polygon = is_triangle(quad);
     vec3 blended = is_polygon ? interpolate_triangle(load_normal(s, quad.x), load_normal(s, quad.y),
                                                      load_normal(s, quad.z), at)
@@ -25,7 +25,7 @@ vec3 compute_plain_normal(SurfaceData s, uvec4 quad, vec2 at) {
     return make_plain_normal(blended, cross_exact(first, second));
 }
 
-vec2 find_ends(SurfaceData s, uint patch_index, uint level, float at, uvec2 edges) {
+vec2 find_ends(const SurfaceData s, const uint patch_index, const uint level, const float at, const uvec2 edges) {
     return find_difference_ends(at, 0.5 / float(1u << level), is_seam(s, patch_index, edges.x), is_seam(s, patch_index, edges.y));
 }
 
@@ -34,7 +34,7 @@ struct BaseDerivatives {
     vec3 u, v;
 };
 
-BaseDerivatives differentiate_position(SurfaceData s, uvec4 quad, uint patch_index, vec2 at) {
+BaseDerivatives differentiate_position(const SurfaceData s, const uvec4 quad, const uint patch_index, const vec2 at) {
     if (is_bicubic(s))
         return BaseDerivatives(differentiate_base(s, quad, patch_index, at, 0u),
                                differentiate_base(s, quad, patch_index, at, 1u));
@@ -49,7 +49,8 @@ struct DisplacementSlopes {
     vec3 d, u, v;
 };
 
-DisplacementSlopes differentiate_displacement(SurfaceData s, uvec4 quad, uint patch_index, uint level, vec2 at) {
+DisplacementSlopes differentiate_displacement(const SurfaceData s, const uvec4 quad, const uint patch_index,
+                                              const uint level, const vec2 at) {
     uint mips = load_mips(s, patch_index);
     uint tile = load_vertex_tile(s, quad.x);
     uint normal_level = choose_normal_level(mips, level);
@@ -74,12 +75,14 @@ DisplacementSlopes differentiate_displacement(SurfaceData s, uvec4 quad, uint pa
     return result;
 }
 
-Basis differentiate_frame(TangentFrame a, TangentFrame b, TangentFrame c, TangentFrame d, float s) {
+Basis differentiate_frame(const TangentFrame a, const TangentFrame b, const TangentFrame c, const TangentFrame d,
+                          const float s) {
     return Basis(blend_difference(a.t, b.t, c.t, d.t, s), blend_difference(a.b, b.b, c.b, d.b, s),
                  blend_difference(a.n, b.n, c.n, d.n, s));
 }
 
-vec3 make_tangent_normal(SurfaceData s, uvec4 quad, vec2 at, BaseDerivatives base, DisplacementSlopes slopes, vec3 normal) {
+vec3 make_tangent_normal(const SurfaceData s, const uvec4 quad, const vec2 at, const BaseDerivatives base,
+                         const DisplacementSlopes slopes, const vec3 normal) {
     TangentFrame c0 = load_frame(s, quad.x);
     TangentFrame c1 = load_frame(s, quad.y);
     TangentFrame c2 = load_frame(s, quad.z);
@@ -93,7 +96,8 @@ vec3 make_tangent_normal(SurfaceData s, uvec4 quad, vec2 at, BaseDerivatives bas
                                  displace_derivative_through(along_v, middle, slopes.d, normal), normal);
 }
 
-vec3 compute_displaced_normal(SurfaceData s, uvec4 quad, uint patch_index, uint level, vec2 at) {
+vec3 compute_displaced_normal(const SurfaceData s, const uvec4 quad, const uint patch_index, const uint level,
+                              const vec2 at) {
     BaseDerivatives base = differentiate_position(s, quad, patch_index, at);
     vec3 normal = make_unit(blend_normals(s, quad, at));
     if (normal == vec3(0.0)) normal = make_unit(cross_exact(base.u, base.v));
@@ -106,7 +110,8 @@ vec3 compute_displaced_normal(SurfaceData s, uvec4 quad, uint patch_index, uint 
 }
 
 /// Object space, not oriented; zero on a surface without normals.
-vec3 compute_shading_normal(SurfaceData s, uvec4 quad, uint patch_index, uint level, vec2 at) {
+vec3 compute_shading_normal(const SurfaceData s, const uvec4 quad, const uint patch_index, const uint level,
+                            const vec2 at) {
     if (s.first_frame == kNone) return vec3(0.0);
     if (s.map == kNone) return compute_plain_normal(s, quad, at);
     return compute_displaced_normal(s, quad, patch_index, level, at);

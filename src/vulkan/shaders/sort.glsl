@@ -16,6 +16,6 @@ uint count_tiles() { return (count_pairs() + kSortTileSize - 1u) / kSortTileSize
 
 uint group_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
-uvec2 load_pair(uint i) { return push.is_back != 0u ? sorted_pairs[i] : pairs[i]; }
+uvec2 load_pair(const uint i) { return push.is_back != 0u ? sorted_pairs[i] : pairs[i]; }
 
-uint find_digit(uvec2 pair) { return pair.x >> push.shift & push.mask; }
+uint find_digit(const uvec2 pair) { return pair.x >> push.shift & push.mask; }

@@ -5,7 +5,7 @@
 shared uint sums[kSortGroupSize];
 
 /// Exclusive prefix sum over the lanes; `sums` holds the inclusive sums afterwards.
-uint scan_lanes(uint lane, uint value) {
+uint scan_lanes(const uint lane, const uint value) {
     sums[lane] = value;
     barrier();
     for (uint distance = 1u; distance < kSortGroupSize; distance *= 2u) {

@@ -6,7 +6,7 @@
 const uint kRowCount = kSortDigitCount / 2u;
 shared uint columns[kRowCount * kSortGroupSize];
 
-void scan_columns(uint lane) {
+void scan_columns(const uint lane) {
     uint below[kRowCount];
     for (uint distance = 1u; distance < kSortGroupSize; distance *= 2u) {
         barrier();
@@ -18,7 +18,7 @@ void scan_columns(uint lane) {
     barrier();
 }
 
-void store_pair(uint i, uvec2 pair) {
+void store_pair(const uint i, const uvec2 pair) {
     if (push.is_back != 0u)
         pairs[i] = pair;
     else

@@ -6,7 +6,7 @@
 layout(scalar, push_constant) uniform Push { PathPush push; };
 layout(scalar, set = 0, binding = kBindFilm) buffer FirstHits { uint first_hits[]; };
 
-void make_point(uint path_index, HitData hit) {
+void make_point(const uint path_index, const HitData hit) {
     CellPoint found = evaluate_hit(hit);
     bool is_flipped = dot(found.triangle.normal, rays[path_index].direction) > 0.0;
     points[path_index].position = found.triangle.position;
@@ -16,7 +16,7 @@ void make_point(uint path_index, HitData hit) {
     points[path_index].is_flipped = is_flipped ? 1u : 0u;
 }
 
-void record_first_hit(uint pixel, HitData hit) {
+void record_first_hit(const uint pixel, const HitData hit) {
     film[pixel].hit_count += 1.0;
     film[pixel].geometric_normal += points[pixel].geometric_normal;
     film[pixel].position += points[pixel].position;

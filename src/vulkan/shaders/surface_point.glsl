@@ -16,7 +16,7 @@ struct CellPoint {
     float position_error;
 };
 
-float bound_error(uint instance, vec3 a, vec3 b, vec3 c, vec3 position) {
+float bound_error(const uint instance, const vec3 a, const vec3 b, const vec3 c, const vec3 position) {
     AffineData world_from_object = instances[instance].world_from_object;
     float corner = max(max(largest_coordinate(a), largest_coordinate(b)), largest_coordinate(c));
     float row = max(max(sum_magnitudes(world_from_object.x), sum_magnitudes(world_from_object.y)),
@@ -25,7 +25,7 @@ float bound_error(uint instance, vec3 a, vec3 b, vec3 c, vec3 position) {
                                 share_of_place(instances[instance].origin));
 }
 
-CellPoint evaluate_cell(uint instance, uint patch_index, uint packed_levels, CellPlace place) {
+CellPoint evaluate_cell(const uint instance, const uint patch_index, const uint packed_levels, const CellPlace place) {
     SurfaceData s = surfaces[instances[instance].surface];
     uvec4 quad = load_quad(s, patch_index);
     vec3 corner[3];
@@ -53,13 +53,13 @@ CellPoint evaluate_cell(uint instance, uint patch_index, uint packed_levels, Cel
     return point;
 }
 
-CellPoint evaluate_hit(HitData hit) {
+CellPoint evaluate_hit(const HitData hit) {
     CellPlace place = {hit.u, hit.v, cell_column(hit.cell), cell_row(hit.cell), cell_is_upper(hit.cell) != 0u};
     return evaluate_cell(hit.instance, hit.patch_index, hit.levels, place);
 }
 
 /// Point (u, v) of a patch as rays with this LOD bias see it.
-CellPoint evaluate_point(uint instance, uint patch_index, vec2 uv, uint lod_bias) {
+CellPoint evaluate_point(const uint instance, const uint patch_index, const vec2 uv, const uint lod_bias) {
     uint packed_levels = lower_packed_levels(find_levels(instances[instance], patch_index), lod_bias);
     uint side = 1u << packed_patch_level(packed_levels);
     bool is_polygon = is_triangle(load_quad(surfaces[instances[instance].surface], patch_index));

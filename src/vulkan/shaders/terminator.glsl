@@ -14,21 +14,22 @@ layout(constant_id = kTerminatorsConstant) const uint kTerminators = 0;
 const uint kAllTerminators = 2u; ///< those of displaced patches too
 
 /// Detail finer than the cells, which normals alone have, says nothing of how far away the surface is.
-bool may_lift(HitData hit) {
+bool may_lift(const HitData hit) {
     SurfaceData s = surfaces[instances[hit.instance].surface];
     if (s.first_frame == kNone) return false;
     return s.map == kNone || (kTerminators == kAllTerminators && !has_detail(load_mips(s, hit.patch_index)));
 }
 
 /// Corner of the triangle that was hit, 0 to 2, among those of its cell: 00 10 11 01.
-uint find_cell_corner(HitData hit, uint k) { return k + (cell_is_upper(hit.cell) != 0u && k > 0u ? 1u : 0u); }
-uvec2 find_corner_sample(HitData hit, uint around) {
+uint find_cell_corner(const HitData hit,
+                      const uint k) { return k + (cell_is_upper(hit.cell) != 0u && k > 0u ? 1u : 0u); }
+uvec2 find_corner_sample(const HitData hit, const uint around) {
     return uvec2(cell_column(hit.cell) + (around == 1u || around == 2u ? 1u : 0u),
                  cell_row(hit.cell) + (around >= 2u ? 1u : 0u));
 }
 
 /// Object space.
-vec3 find_triangle_corner(SurfaceData s, HitData hit, uint k) {
+vec3 find_triangle_corner(const SurfaceData s, const HitData hit, const uint k) {
     uint around = find_cell_corner(hit, k);
     if (s.map == kNone) return load_position(s, load_quad(s, hit.patch_index)[around]);
     if (kTerminators != kAllTerminators) return vec3(0.0);
@@ -37,7 +38,7 @@ vec3 find_triangle_corner(SurfaceData s, HitData hit, uint k) {
 }
 
 /// Of the smooth surface, object space: at the point for `turn` 0, then at the corners.
-vec3 find_smooth_normal(SurfaceData s, HitData hit, uint turn) {
+vec3 find_smooth_normal(const SurfaceData s, const HitData hit, const uint turn) {
     uvec4 quad = load_quad(s, hit.patch_index);
     vec2 at = vec2(hit.u, hit.v);
     uint around = find_cell_corner(hit, max(turn, 1u) - 1u);
@@ -50,7 +51,7 @@ vec3 find_smooth_normal(SurfaceData s, HitData hit, uint turn) {
 
 /// How far above the point the smooth surface lies from which light of that direction is seen; 0: it comes
 /// from above the triangle, or from below both.
-float find_light_lift(HitData hit, vec3 geometric_normal, vec3 direction) {
+float find_light_lift(const HitData hit, const vec3 geometric_normal, const vec3 direction) {
     if (dot(direction, geometric_normal) > 0.0 || !may_lift(hit)) return 0.0;
     SurfaceData s = surfaces[instances[hit.instance].surface];
     vec3 corner[3];
@@ -75,8 +76,8 @@ float find_light_lift(HitData hit, vec3 geometric_normal, vec3 direction) {
 
 #else
 const uint kTerminators = 0;
-bool may_lift(HitData hit) { return false; }
-float find_light_lift(HitData hit, vec3 geometric_normal, vec3 direction) { return 0.0; }
+bool may_lift(const HitData hit) { return false; }
+float find_light_lift(const HitData hit, const vec3 geometric_normal, const vec3 direction) { return 0.0; }
 #endif
 
 #endif

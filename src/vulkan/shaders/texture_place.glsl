@@ -14,21 +14,21 @@ struct TexturePlace {
     vec2 uv; ///< in the mesh's own set
 };
 
-vec2 blend_corner_uvs(SurfaceData s, vec2 uv[4], vec2 at) {
+vec2 blend_corner_uvs(const SurfaceData s, vec2 uv[4], const vec2 at) {
     bool is_bilinear = s.map != kNone || s.has_bilinear_uvs != 0u;
     return is_bilinear ? blend_patch_uv(uv[0], uv[1], uv[2], uv[3], at)
                        : blend_polygon_uv(uv[0], uv[1], uv[2], uv[3], at);
 }
 
 /// `at`: on the patch.
-vec2 interpolate_uv(SurfaceData s, uvec4 quad, vec2 at) {
+vec2 interpolate_uv(const SurfaceData s, const uvec4 quad, const vec2 at) {
     if (s.first_uv == kNone) return vec2(0.0);
     vec2 uv[4] = {load_uv(s, quad.x), load_uv(s, quad.y), load_uv(s, quad.z), load_uv(s, quad.w)};
     return blend_corner_uvs(s, uv, at);
 }
 
 /// In the set that a texture names, InputTextureData::uv_set.
-vec2 find_uv(TexturePlace place, uint uv_set) {
+vec2 find_uv(const TexturePlace place, const uint uv_set) {
     if (kHasUvSets == 0u || uv_set == kNone) return place.uv;
     SurfaceData s = surfaces[place.surface];
     if (s.first_uv_set == kNone) return place.uv;

@@ -7,7 +7,7 @@
 #include "formulas/texture.h"
 
 /// Bilinear value at a position in texels from the centre of texel (0, 0); repeated in x.
-vec3 fetch_bilinear(TextureData source, vec2 at, uint wrap_y) {
+vec3 fetch_bilinear(const TextureData source, const vec2 at, const uint wrap_y) {
     vec2 whole = vec2(floor_texel(at.x), floor_texel(at.y));
     vec2 fraction = at - whole;
     int width = int(source.width);
@@ -27,7 +27,7 @@ vec3 fetch_bilinear(TextureData source, vec2 at, uint wrap_y) {
 }
 
 /// Value of a B-spline with the texels as coefficients; repeated in both directions.
-vec3 fetch_spline_color(TextureData source, vec2 at) {
+vec3 fetch_spline_color(const TextureData source, const vec2 at) {
     vec2 whole = vec2(floor_texel(at.x), floor_texel(at.y));
     CubicWeights along = weigh_spline(at.x - whole.x);
     vec3 point[4];
@@ -45,7 +45,7 @@ vec3 fetch_spline_color(TextureData source, vec2 at) {
 }
 
 /// Repeated in both directions; row 0 is v = 1. `index` may have kSplineTexture. A non-finite uv gives texel (0, 0).
-vec3 fetch_texture(uint index, vec2 uv) {
+vec3 fetch_texture(const uint index, const vec2 uv) {
     TextureData source = textures[index & ~kSplineTexture];
     if (!is_finite(vec3(uv, 0.0))) return make_texture_color(source.channel_count, load_texel(source, 0u, 0u).xyz);
     vec2 at = locate_texture_uv(uv, vec2(source.width, source.height));
@@ -54,18 +54,18 @@ vec3 fetch_texture(uint index, vec2 uv) {
 }
 
 /// A texel, or 0 outside with kWrapBlack.
-vec3 load_wrapped(TextureData source, int x, int y, uint wrap) {
+vec3 load_wrapped(const TextureData source, const int x, const int y, const uint wrap) {
     int column = wrap_texel(x, int(source.width), wrap);
     int row = wrap_texel(y, int(source.height), wrap);
     return column < 0 || row < 0 ? vec3(0.0) : load_texel(source, uint(column), uint(row)).xyz;
 }
 
-vec3 blend_texels(vec3 a, vec3 b, float f) {
+vec3 blend_texels(const vec3 a, const vec3 b, const float f) {
     return vec3(blend(a.x, b.x, f), blend(a.y, b.y, f), blend(a.z, b.z, f));
 }
 
 /// As fetch_texture, by any way to go on outside [0, 1]^2.
-vec3 fetch_wrapped(uint index, vec2 uv, uint wrap) {
+vec3 fetch_wrapped(const uint index, const vec2 uv, const uint wrap) {
     TextureData source = textures[index & ~kSplineTexture];
     if (!is_finite(vec3(uv, 0.0))) return make_texture_color(source.channel_count, load_texel(source, 0u, 0u).xyz);
     vec2 size = vec2(source.width, source.height);
@@ -91,7 +91,7 @@ vec3 fetch_wrapped(uint index, vec2 uv, uint wrap) {
 }
 
 /// Value at a position in [0, 1]^2 from the top left corner: repeated in x, clamped in y.
-vec3 fetch_latlong(uint index, vec2 position) {
+vec3 fetch_latlong(const uint index, const vec2 position) {
     TextureData source = textures[index];
     return fetch_bilinear(source, locate_latlong(position, vec2(source.width, source.height)), kWrapClamp);
 }

@@ -4,7 +4,7 @@
 
 layout(set = 0, binding = kBindBuildNodes) buffer Nodes { uvec4 nodes[]; };
 
-NodeBox load_box(uint key) {
+NodeBox load_box(const uint key) {
     return NodeBox(uintBitsToFloat(nodes[2u * key].xyz), uintBitsToFloat(nodes[2u * key + 1u].xyz));
 }
 

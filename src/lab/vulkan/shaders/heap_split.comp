@@ -7,7 +7,7 @@ layout(set = 0, binding = kBindBuildNodes) buffer Nodes { uvec4 nodes[]; };
 layout(set = 0, binding = kBindBuildIds) writeonly buffer Ids { uint ids[]; };
 
 /// `word`: number of entries from `first` on, or kEmptySlot.
-void write_range(uint key, uint first, uint word) {
+void write_range(const uint key, const uint first, const uint word) {
     nodes[2u * key] = uvec4(0u, 0u, 0u, first);
     nodes[2u * key + 1u] = uvec4(0u, 0u, 0u, word);
 }

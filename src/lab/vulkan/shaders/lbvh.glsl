@@ -22,23 +22,23 @@ struct NodeBox {
     vec3 lower, upper;
 };
 
-NodeBox load_primitive_box(uint primitive) {
+NodeBox load_primitive_box(const uint primitive) {
     uint first = 6u * primitive;
     return NodeBox(vec3(boxes[first], boxes[first + 1u], boxes[first + 2u]),
                    vec3(boxes[first + 3u], boxes[first + 4u], boxes[first + 5u]));
 }
 
-float get_lesser(float a, float b) { return a < b ? a : b; }
-float get_greater(float a, float b) { return a > b ? a : b; }
+float get_lesser(const float a, const float b) { return a < b ? a : b; }
+float get_greater(const float a, const float b) { return a > b ? a : b; }
 
-NodeBox join_boxes(NodeBox a, NodeBox b) {
+NodeBox join_boxes(const NodeBox a, const NodeBox b) {
     return NodeBox(
         vec3(get_lesser(a.lower.x, b.lower.x), get_lesser(a.lower.y, b.lower.y), get_lesser(a.lower.z, b.lower.z)),
         vec3(get_greater(a.upper.x, b.upper.x), get_greater(a.upper.y, b.upper.y), get_greater(a.upper.z, b.upper.z)));
 }
 
 /// Of entries [first, first + count).
-NodeBox join_primitives(uint first, uint count) {
+NodeBox join_primitives(const uint first, const uint count) {
     NodeBox all = NodeBox(vec3(make_infinity()), vec3(-make_infinity()));
     uint done = 0u;
     for (; done < count; ++done) all = join_boxes(all, load_primitive_box(pairs[first + done].y));
@@ -46,17 +46,17 @@ NodeBox join_primitives(uint first, uint count) {
     return all;
 }
 
-HeapKey load_code(uint entry) {
+HeapKey load_code(const uint entry) {
     if (kCodeBits == 30u) return HeapKey(pairs[entry].x, 0u);
     uvec2 code = sorted_codes[entry];
     return HeapKey(code.x, code.y);
 }
 
 /// Bits in which two codes or numbers differ.
-HeapKey differ_bits(HeapKey a, HeapKey b) { return HeapKey(a.low ^ b.low, a.high ^ b.high); }
+HeapKey differ_bits(const HeapKey a, const HeapKey b) { return HeapKey(a.low ^ b.low, a.high ^ b.high); }
 
 /// First entry of [first, last] with bit `bit` of its code set; the last one has it, the first has not.
-uint find_bit(uint first, uint last, uint bit) {
+uint find_bit(uint first, uint last, const uint bit) {
     while (last - first > 1u) {
         uint middle = first + (last - first) / 2u;
         if ((get_low_word(shift_right(load_code(middle), bit)) & 1u) != 0u)
@@ -73,13 +73,13 @@ struct Cut {
 };
 
 /// Of entries [first, last] whose codes are not all equal.
-Cut cut_by_code(uint first, uint last) {
+Cut cut_by_code(const uint first, const uint last) {
     uint bit = get_key_level(differ_bits(load_code(first), load_code(last)));
     return Cut(find_bit(first, last, bit), axis_of_morton_bit(bit));
 }
 
 /// Of entries of equal codes.
-Cut cut_by_number(uint first, uint last) {
+Cut cut_by_number(const uint first, const uint last) {
     uint bit = get_key_level(first ^ last);
     return Cut((last >> bit) << bit, 0u);
 }

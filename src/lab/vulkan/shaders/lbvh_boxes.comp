@@ -8,7 +8,7 @@ layout(set = 0, binding = kBindMeshPositions) uniform samplerBuffer mesh_positio
 shared uint group_lower[3];
 shared uint group_upper[3];
 
-NodeBox find_triangle_box(uint triangle) {
+NodeBox find_triangle_box(const uint triangle) {
     uvec4 corners = texelFetch(mesh_triangles, int(triangle));
     vec3 a = texelFetch(mesh_positions, int(corners.x)).xyz;
     vec3 b = texelFetch(mesh_positions, int(corners.y)).xyz;
@@ -16,7 +16,7 @@ NodeBox find_triangle_box(uint triangle) {
     return join_boxes(join_boxes(NodeBox(a, a), NodeBox(b, b)), NodeBox(c, c));
 }
 
-void store_primitive_box(uint primitive, NodeBox box) {
+void store_primitive_box(const uint primitive, const NodeBox box) {
     for (uint axis = 0u; axis < 3u; ++axis) {
         boxes[6u * primitive + axis] = select_axis(box.lower, axis);
         boxes[6u * primitive + 3u + axis] = select_axis(box.upper, axis);

@@ -8,10 +8,10 @@ layout(set = 0, binding = kBindBuildIds) writeonly buffer Ids { uint ids[]; };
 
 shared uint tile_count;
 
-bool is_code(uint entry, HeapKey code) { return is_equal(load_code(entry), code); }
+bool is_code(const uint entry, const HeapKey code) { return is_equal(load_code(entry), code); }
 
 /// How many of the entries before `entry`, at most `most`, have the code.
-uint count_before(uint entry, HeapKey code, uint most) {
+uint count_before(const uint entry, const HeapKey code, uint most) {
     uint least = 0u;
     most = min(most, entry);
     while (least < most) {
@@ -25,7 +25,7 @@ uint count_before(uint entry, HeapKey code, uint most) {
 }
 
 /// The same of those from `entry` on, which has it.
-uint count_from(uint entry, HeapKey code, uint most) {
+uint count_from(const uint entry, const HeapKey code, uint most) {
     uint least = 1u;
     most = min(most, push.primitive_count - entry);
     while (least < most) {
@@ -39,7 +39,7 @@ uint count_from(uint entry, HeapKey code, uint most) {
 }
 
 /// `entry` > 0. The node that cuts here has the entries of this code whose numbers agree above its lowest bit.
-bool is_cut(uint entry) {
+bool is_cut(const uint entry) {
     HeapKey code = load_code(entry);
     if (!is_code(entry - 1u, code)) return true;
     uint most = min(get_lowest_bit(entry), push.max_leaf_size);

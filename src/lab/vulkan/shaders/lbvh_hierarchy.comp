@@ -14,7 +14,7 @@ struct NodePrefix {
     bool is_by_number;
 };
 
-NodePrefix find_prefix(uint cut) {
+NodePrefix find_prefix(const uint cut) {
     HeapKey code = load_code(cut);
     HeapKey difference = differ_bits(load_code(cut - 1u), code);
     if (is_zero(difference)) {
@@ -25,14 +25,14 @@ NodePrefix find_prefix(uint cut) {
     return NodePrefix(shift_right(code, bit), bit, 0u, false);
 }
 
-bool is_inside(uint entry, NodePrefix prefix) {
+bool is_inside(const uint entry, const NodePrefix prefix) {
     HeapKey code = load_code(entry);
     if (prefix.is_by_number) return is_equal(code, prefix.code) && shift_right(entry, prefix.bit) == prefix.number;
     return is_equal(shift_right(code, prefix.bit), prefix.code);
 }
 
 /// First entry of the node, at most `inside`.
-uint find_first(uint inside, NodePrefix prefix) {
+uint find_first(uint inside, const NodePrefix prefix) {
     uint step = 1u;
     while (step <= inside && is_inside(inside - step, prefix)) {
         inside -= step;
@@ -44,7 +44,7 @@ uint find_first(uint inside, NodePrefix prefix) {
 }
 
 /// Last entry of the node, at least `inside`.
-uint find_last(uint inside, NodePrefix prefix) {
+uint find_last(uint inside, const NodePrefix prefix) {
     uint count = push.primitive_count;
     uint step = 1u;
     while (step < count - inside && is_inside(inside + step, prefix)) {
@@ -57,7 +57,7 @@ uint find_last(uint inside, NodePrefix prefix) {
 }
 
 /// Node of entries [first, last].
-void write_node(uint node, uint first, uint last) {
+void write_node(const uint node, const uint first, const uint last) {
     bool is_one_code = is_equal(load_code(first), load_code(last));
     uint next = last + 1u;
     skips[node] = next < push.primitive_count ? 2u + 2u * numbers[next] : kNoNode;

@@ -7,17 +7,17 @@ layout(set = 0, binding = kBindBuildParents) readonly buffer Parents { uint pare
 layout(set = 0, binding = kBindBuildArrivals) coherent buffer Arrivals { uint arrivals[]; };
 layout(set = 0, binding = kBindBuildHeights) coherent buffer Heights { uint heights[]; };
 
-void store_box(uint node, NodeBox box) {
+void store_box(const uint node, const NodeBox box) {
     nodes[2u * node].xyz = floatBitsToUint(box.lower);
     nodes[2u * node + 1u].xyz = floatBitsToUint(box.upper);
 }
 
-NodeBox load_box(uint node) {
+NodeBox load_box(const uint node) {
     return NodeBox(uintBitsToFloat(nodes[2u * node].xyz), uintBitsToFloat(nodes[2u * node + 1u].xyz));
 }
 
 /// The box of `node`, if it is a leaf; returns how many it was.
-uint bound_leaf(uint node) {
+uint bound_leaf(const uint node) {
     uint word = nodes[2u * node + 1u].w;
     if (!is_leaf_word(word)) return 0u;
     store_box(node, join_primitives(nodes[2u * node].w, get_word_count(word)));
@@ -25,12 +25,12 @@ uint bound_leaf(uint node) {
 }
 
 /// Levels below `node`.
-uint find_height(uint node) {
+uint find_height(const uint node) {
     return is_leaf_word(nodes[2u * node + 1u].w) ? 0u : heights[(nodes[2u * node].w - 1u) / 2u];
 }
 
 /// A pair whose boxes are done; returns the pair of their parent, kNoNode at the root.
-uint bound_parent(uint pair) {
+uint bound_parent(const uint pair) {
     uint left = 1u + 2u * pair;
     uint parent = parents[left];
     store_box(parent, join_boxes(load_box(left), load_box(left + 1u)));

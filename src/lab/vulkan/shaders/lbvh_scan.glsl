@@ -2,7 +2,7 @@
 shared uint lane_sums[kBuildGroupSize];
 
 /// Sum over the lanes before this one; the last of lane_sums holds the sum over all afterwards.
-uint scan_lanes(uint lane, uint value) {
+uint scan_lanes(const uint lane, const uint value) {
     barrier();
     lane_sums[lane] = value;
     barrier();

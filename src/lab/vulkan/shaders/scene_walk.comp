@@ -18,85 +18,85 @@ uint waiting_first;   ///< instances of the leaf that are still to be entered, a
 uint waiting_count = 0u;
 float waiting_entry; ///< into the box of their leaf
 
-uint load_word(uint word) { return texelFetch(primitive_ids, int(word)).x; }
-vec3 load_word_vector(uint word) {
+uint load_word(const uint word) { return texelFetch(primitive_ids, int(word)).x; }
+vec3 load_word_vector(const uint word) {
     return vec3(uintBitsToFloat(load_word(word)), uintBitsToFloat(load_word(word + 1u)),
                 uintBitsToFloat(load_word(word + 2u)));
 }
 
 /// 0: of the instances, 1 + s: of surface s.
-WalkTreeData load_walk_tree(uint index) {
+WalkTreeData load_walk_tree(const uint index) {
     uint word = kWalkTreeWords * index;
     return WalkTreeData(load_word_vector(word), load_word_vector(word + 3u), load_word(word + 6u),
                         load_word(word + 7u), load_word(word + 8u), load_word(word + 9u), load_word(word + 10u),
                         load_word(word + 11u), load_word(word + 12u), load_word(word + 13u));
 }
 
-TreeNode load_any_node(uint place) {
+TreeNode load_any_node(const uint place) {
     uvec4 low = texelFetch(nodes, 2 * int(place));
     uvec4 high = texelFetch(nodes, 2 * int(place) + 1);
     return TreeNode(uintBitsToFloat(low.xyz), low.w, uintBitsToFloat(high.xyz), high.w);
 }
 
-BoxInterval cross_tree_box(TreeNode node) {
+BoxInterval cross_tree_box(const TreeNode node) {
     return cross_box(ray, node.lower, node.upper, ray_t_min, ray_t_max);
 }
 
 /// Infinity where nothing in the box is wanted.
-float enter_wanted_box(TreeNode node) {
+float enter_wanted_box(const TreeNode node) {
     BoxInterval interval = cross_tree_box(node);
     float entry = max(interval.entry, instance_entry);
     return is_wanted(interval, entry) ? entry : kInfinity;
 }
 
 // The hooks of formulas/tree.h.
-bool visit_leaf(uint first, uint word, uint node);
+bool visit_leaf(const uint first, const uint word, const uint node);
 bool resume_walk();
 void count_box_test() {}
 void count_restart() {}
-void count_bytes(uint bytes) {}
+void count_bytes(const uint bytes) {}
 float get_limit() { return find_limit(); }
 #ifdef WALK_KD
-KdNode load_kd_node(uint node) {
+KdNode load_kd_node(const uint node) {
     return KdNode(load_word(tree.links + 2u * node), load_word(tree.links + 2u * node + 1u));
 }
-KdBox load_kd_box(uint node) {
+KdBox load_kd_box(const uint node) {
     TreeNode cell = load_any_node(tree.nodes + node);
     return KdBox(cell.lower, cell.first, cell.upper, cell.word);
 }
 KdRay enter_root_cell() { return make_kd_ray(ray, tree.lower, tree.upper, ray_t_min, best_t); }
 #else
-TreeNode load_node(uint node) { return load_any_node(tree.nodes + node); }
-float enter_box(TreeNode node) { return enter_wanted_box(node); }
-float enter_whole_box(TreeNode node) {
+TreeNode load_node(const uint node) { return load_any_node(tree.nodes + node); }
+float enter_box(const TreeNode node) { return enter_wanted_box(node); }
+float enter_whole_box(const TreeNode node) {
     BoxInterval interval = cross_tree_box(node);
     float entry = max(interval.entry, instance_entry);
     return is_wanted_at_all(interval, entry) ? entry : kInfinity;
 }
-bool is_axis_backward(uint axis) { return select_axis(ray.direction, axis) < 0.0; }
-uint load_parent(uint node) { return load_word(tree.links + node); }
-uint load_skip(uint node) { return load_word(tree.links + node); }
+bool is_axis_backward(const uint axis) { return select_axis(ray.direction, axis) < 0.0; }
+uint load_parent(const uint node) { return load_word(tree.links + node); }
+uint load_skip(const uint node) { return load_word(tree.links + node); }
 #if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
 HeapForm get_heap_form() { return HeapForm(tree.flat_levels, tree.flat_pairs); }
-HeapBlock load_heap_block(uint block) {
+HeapBlock load_heap_block(const uint block) {
     uint word = tree.links + 3u * block;
     return HeapBlock(load_word(word), load_word(word + 1u), load_word(word + 2u));
 }
-HeapBrick load_heap_brick(uint brick) {
+HeapBrick load_heap_brick(const uint brick) {
     uint word = tree.bricks + 6u * brick;
     return HeapBrick(load_word(word), load_word(word + 1u), load_word(word + 2u), load_word(word + 3u),
                      load_word(word + 4u), load_word(word + 5u));
 }
 #include "lab/walks/succinct_heap.h"
-uint find_slot(Key key) { return find_succinct_slot(key); }
+uint find_slot(const Key key) { return find_succinct_slot(key); }
 #endif
 #endif
 #include "lab/vulkan/shaders/walk_kind.glsl"
 
 #if defined(WALK_TRAIL) || defined(WALK_PAIR_TRAIL)
 // The key of the root in each width; the macro Key picks one by the type of the argument.
-uint make_root_key(uint width) { return 1u; }
-HeapKey make_root_key(HeapKey width) { return HeapKey(1u, 0u); }
+uint make_root_key(const uint width) { return 1u; }
+HeapKey make_root_key(const HeapKey width) { return HeapKey(1u, 0u); }
 Key find_root() {
     Key width;
     return make_root_key(width);
@@ -108,7 +108,7 @@ uint find_root() { return 0u; }
 KindState world_state; ///< of the tree of instances, past the leaf whose instances are entered
 
 /// Where the ray enters primitive `id`, the same in all leaves; infinity where nothing in its box is wanted.
-float enter_primitive(uint id, float leaf_entry) {
+float enter_primitive(const uint id, const float leaf_entry) {
 #ifdef WALK_KD
     return enter_wanted_box(load_any_node(tree.boxes + id));
 #else
@@ -117,9 +117,9 @@ float enter_primitive(uint id, float leaf_entry) {
 }
 
 /// Before the first hit the limit is infinite, too, and infinity still means a missed box.
-bool is_within_limit(float entry) { return entry < kInfinity && entry <= find_limit(); }
+bool is_within_limit(const float entry) { return entry < kInfinity && entry <= find_limit(); }
 
-float enter_leaf(uint node) {
+float enter_leaf(const uint node) {
 #ifdef WALK_KD
     return 0.0;
 #else
@@ -146,7 +146,7 @@ bool enter_next_instance() {
     return is_entered;
 }
 
-bool visit_leaf(uint first, uint word, uint node) {
+bool visit_leaf(const uint first, const uint word, const uint node) {
     uint count = get_word_count(word);
     float leaf_entry = enter_leaf(node);
     if (instance_index == kNone) {
@@ -183,7 +183,7 @@ bool resume_walk() {
     return true;
 }
 
-void enter_tiles(uint root, float entry) {
+void enter_tiles(const uint root, const float entry) {
     push_node(root, entry);
     while (stack_size > 0u) {
         --stack_size;

@@ -11,7 +11,7 @@ layout(scalar, set = 0, binding = kBindWalkState) buffer State { WalkState state
 layout(scalar, set = 0, binding = kBindStartKeys) readonly buffer StartKeys { HeapKey start_keys[]; };
 layout(scalar, set = 0, binding = kBindLeafKeys) writeonly buffer LeafKeys { HeapKey leaf_keys[]; };
 
-void choose_start(uint ray) {
+void choose_start(const uint ray) {
     HeapKey root = HeapKey(push.root, 0u);
     HeapKey start = root;
     if (push.has_start_keys != 0u) start = start_keys[ray];
@@ -19,12 +19,12 @@ void choose_start(uint ray) {
     walk_hit_leaf = narrow_key(start);
 }
 
-void keep_leaf(uint ray) {
+void keep_leaf(const uint ray) {
     if (push.has_leaf_keys != 0u) leaf_keys[ray] = widen_key(walk_hit_leaf);
 }
 #else
-void choose_start(uint ray) {}
-void keep_leaf(uint ray) {}
+void choose_start(const uint ray) {}
+void keep_leaf(const uint ray) {}
 #endif
 
 void main() {

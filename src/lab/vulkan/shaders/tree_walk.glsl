@@ -31,13 +31,13 @@ void count_primitive_test() {
 void count_restart() {
     if (kIsCounting != 0u) ++walk_counts.restarts;
 }
-void count_bytes(uint bytes) {
+void count_bytes(const uint bytes) {
     if (kIsCounting != 0u) walk_counts.bytes += bytes;
 }
 
 float get_limit() { return walk_best.t; }
 bool resume_walk() { return false; }
-bool visit_leaf(uint first, uint word, uint node);
+bool visit_leaf(const uint first, const uint word, const uint node);
 
 #ifdef WALK_KD
 #include "lab/vulkan/shaders/kd_hooks.glsl"
@@ -69,11 +69,11 @@ void note_hit_leaf() { walk_hit_leaf = walk_state.leaf; }
 void note_hit_leaf() {}
 #endif
 
-vec3 load_sheared(uint vertex) {
+vec3 load_sheared(const uint vertex) {
     return shear_vertex(walk_ray, texelFetch(mesh_positions, int(vertex)).xyz);
 }
 
-void offer_triangle(uint primitive) {
+void offer_triangle(const uint primitive) {
     count_primitive_test();
     uvec4 corners = texelFetch(mesh_triangles, int(primitive));
     TriangleHit found = intersect_sheared(walk_ray, load_sheared(corners.x), load_sheared(corners.y),
@@ -83,7 +83,7 @@ void offer_triangle(uint primitive) {
 }
 
 /// The count of a kd leaf has the place of a word.
-bool visit_leaf(uint first, uint word, uint node) {
+bool visit_leaf(const uint first, const uint word, const uint node) {
     uint count = get_word_count(word);
     float limit = walk_best.t;
     bool is_ended = false;
@@ -95,7 +95,7 @@ bool visit_leaf(uint first, uint word, uint node) {
     return is_ended;
 }
 
-void begin_walk(TreeRay ray) {
+void begin_walk(const TreeRay ray) {
     walk_ray = make_object_ray(ray.origin, ray.direction);
     walk_t_min = ray.t_min;
     walk_t_max = ray.t_max;
