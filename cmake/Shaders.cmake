@@ -1,11 +1,10 @@
 # relief_shaders(TARGET DIRECTORY HEADER NAMESPACE [VARIANTS NAME:SOURCE:DEFINITIONS...] [FULL_SCREEN NAME...]
-# [OPTIMISED NAME...] [INLINED NAME...]): compiles the shaders of DIRECTORY to SPIR-V and adds them to the target as
-# NAMESPACE::find_shader, which HEADER declares. A variant is SOURCE.comp under another name, with macros (A or A=1, separated
-# by commas); a file that has variants is not compiled by itself. The compute shaders and variants named after FULL_SCREEN are
-# also there as fragment shaders, NAME_fragment. Drivers optimise by themselves, and better: behind glslc -O the variables of
-# inlined functions keep their registers from one turn of a loop to the next. Those named after OPTIMISED get it all the same:
-# without it drivers take long to read them. Those named after INLINED are there both ways, the second as NAME_inlined, for
-# drivers of processors, which have no registers to lose.
+# [OPTIMISED NAME...]): compiles the shaders of DIRECTORY to SPIR-V and adds them to the target as NAMESPACE::find_shader,
+# which HEADER declares. A variant is SOURCE.comp under another name, with macros (A or A=1, separated by commas); a file
+# that has variants is not compiled by itself. The compute shaders and variants named after FULL_SCREEN are also there as
+# fragment shaders, NAME_fragment. Drivers optimise by themselves, and better: behind glslc -O the variables of inlined
+# functions keep their registers from one turn of a loop to the next. Those named after OPTIMISED get it all the same:
+# without it drivers take long to read them.
 find_program(RELIEF_GLSLC glslc REQUIRED)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
@@ -19,7 +18,7 @@ function(relief_shader name source)
 endfunction()
 
 function(relief_shaders target directory header namespace)
-  cmake_parse_arguments(PARSE_ARGV 4 argument "" "" "VARIANTS;FULL_SCREEN;OPTIMISED;INLINED")
+  cmake_parse_arguments(PARSE_ARGV 4 argument "" "" "VARIANTS;FULL_SCREEN;OPTIMISED")
   file(GLOB shaders CONFIGURE_DEPENDS ${directory}/*.comp ${directory}/*.vert ${directory}/*.frag)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders)
   file(MAKE_DIRECTORY ${folder})
@@ -44,9 +43,6 @@ function(relief_shaders target directory header namespace)
   endforeach()
   foreach(name IN LISTS argument_FULL_SCREEN)
     relief_shader(${name}_fragment ${source_${name}} ${flags_${name}} -fshader-stage=fragment -DFULL_SCREEN)
-  endforeach()
-  foreach(name IN LISTS argument_INLINED)
-    relief_shader(${name}_inlined ${source_${name}} ${flags_${name}} -O)
   endforeach()
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_shaders.py)
   add_custom_command(OUTPUT ${folder}/shaders.cpp

@@ -11,7 +11,7 @@ struct Basis {
 };
 
 /// Frame about a unit vector without a singularity (Duff et al. 2017, Building an Orthonormal Basis).
-FN Basis make_basis(Vec3 n) {
+FN Basis make_basis(const Vec3 n) {
     Float sign = select(n.z < Float(0.0f), Float(-1.0f), Float(1.0f));
     Float a = Float(-1.0f) / (sign + n.z);
     Float b = n.x * n.y * a;
@@ -22,7 +22,7 @@ FN Basis make_basis(Vec3 n) {
 }
 
 /// Frame about a unit vector `n` whose t goes along `tangent`, of any length, as far as it can.
-FN Basis make_basis_along(Vec3 n, Vec3 tangent) {
+FN Basis make_basis_along(const Vec3 n, const Vec3 tangent) {
     Basis result = make_basis(n);
     Vec3 level = tangent - n * dot(n, tangent);
     Bool is_level = dot(level, level) > Float(1e-8f) * dot(tangent, tangent);
@@ -31,12 +31,12 @@ FN Basis make_basis_along(Vec3 n, Vec3 tangent) {
     return result;
 }
 
-FN Vec3 to_local(Basis basis, Vec3 v) {
+FN Vec3 to_local(const Basis basis, const Vec3 v) {
     Vec3 result = {dot(v, basis.t), dot(v, basis.b), dot(v, basis.n)};
     return result;
 }
 
-FN Vec3 from_local(Basis basis, Vec3 v) { return basis.t * v.x + basis.b * v.y + basis.n * v.z; }
+FN Vec3 from_local(const Basis basis, const Vec3 v) { return basis.t * v.x + basis.b * v.y + basis.n * v.z; }
 
 #include "formulas/end.h"
 #endif

@@ -19,7 +19,7 @@ struct BounceLod {
 
 /// Distance at which the cone of a bounce ray is as wide as the cells of M_(kBounceBias) around its origin,
 /// which it sees from there on. Infinity: nowhere. `lod_bias`: of its surface; `pdf`: per steradian.
-FN float find_coarse_distance(BounceLod lod, Vec3 origin, uint lod_bias, float pdf) {
+FN float find_coarse_distance(const BounceLod lod, const Vec3 origin, const uint lod_bias, const float pdf) {
     if (!(lod.cell_angle > 0.0f) || lod_bias != 0u || !(pdf > 0.0f)) return make_infinity();
     float cell = lod.cell_angle * length(origin - lod.camera) * float(1u << kBounceBias);
     return cell * sqrt(pdf) / kBounceCone;

@@ -44,28 +44,30 @@ struct BsdfSample {
     Float pdf;
 };
 
-FN Vec3 make_grey(Float value) {
+FN Vec3 make_grey(const Float value) {
     Vec3 grey = {value, value, value};
     return grey;
 }
 
-FN Float luminance(Vec3 c) { return Float(0.2126f) * c.x + Float(0.7152f) * c.y + Float(0.0722f) * c.z; }
+FN Float luminance(const Vec3 c) {
+    return Float(0.2126f) * c.x + Float(0.7152f) * c.y + Float(0.0722f) * c.z;
+}
 
 /// Light that leaves after multiple scattering (Hill 2018, part 2): f^2 E / (1 - f (1 - E)).
-FN Float multiple_scattering(Float f, Float average_albedo) {
+FN Float multiple_scattering(const Float f, const Float average_albedo) {
     return f * f * average_albedo / (Float(1.0f) - f * (Float(1.0f) - average_albedo));
 }
 
 /// Mean of Schlick's Fresnel over the cosine-weighted hemisphere.
-FN Float average_fresnel(Float f0, Float f90) { return f0 + (f90 - f0) * Float(1.0f / 21.0f); }
+FN Float average_fresnel(const Float f0, const Float f90) { return f0 + (f90 - f0) * Float(1.0f / 21.0f); }
 
 /// Albedo of the dielectric coat, multiple scattering included.
-FN Float coat_albedo(Bsdf b, GgxAlbedo e) {
+FN Float coat_albedo(const Bsdf b, const GgxAlbedo e) {
     return b.coat_f0 * e.scale + b.coat_f90 * e.bias + b.coat_multiple * (Float(1.0f) - e.scale - e.bias);
 }
 
 /// For a material without coat or metal; equals make_general_bsdf for every outgoing direction.
-FN Bsdf make_diffuse_bsdf(BsdfParameters p) {
+FN Bsdf make_diffuse_bsdf(const BsdfParameters p) {
     Float zero = Float(0.0f);
     Bsdf b;
     b.f0 = make_grey(zero);
@@ -84,9 +86,9 @@ FN Bsdf make_diffuse_bsdf(BsdfParameters p) {
 }
 
 /// Whether only the diffuse base scatters, unattenuated.
-FN Bool is_diffuse(Bsdf b) { return b.f90 == Float(0.0f); }
+FN Bool is_diffuse(const Bsdf b) { return b.f90 == Float(0.0f); }
 
-FN Bsdf make_general_bsdf(BsdfParameters p, Float cos_o) {
+FN Bsdf make_general_bsdf(const BsdfParameters p, const Float cos_o) {
     Float one = Float(1.0f);
     Float dielectric = one - p.metallic;
     Float root = (p.ior - one) / (p.ior + one);
@@ -123,7 +125,7 @@ FN Bsdf make_general_bsdf(BsdfParameters p, Float cos_o) {
     return b;
 }
 
-FN Bsdf select_bsdf(Bool condition, Bsdf a, Bsdf b) {
+FN Bsdf select_bsdf(const Bool condition, const Bsdf a, const Bsdf b) {
     Bsdf result;
     result.f0 = select(condition, a.f0, b.f0);
     result.f90 = select(condition, a.f90, b.f90);
@@ -141,14 +143,14 @@ FN Bsdf select_bsdf(Bool condition, Bsdf a, Bsdf b) {
 }
 
 /// `cos_o`: cosine of the outgoing direction, > 0.
-FN Bsdf make_bsdf(BsdfParameters p, Float cos_o) {
+FN Bsdf make_bsdf(const BsdfParameters p, const Float cos_o) {
     Bool is_general = p.metallic > Float(0.0f) || p.ior > Float(1.0f);
     Bsdf b = make_diffuse_bsdf(p);
     if (is_any(is_general)) b = select_bsdf(is_general, make_general_bsdf(p, cos_o), b);
     return b;
 }
 
-FN Vec3 schlick_fresnel(Vec3 f0, Float f90, Float cos_h) {
+FN Vec3 schlick_fresnel(const Vec3 f0, const Float f90, const Float cos_h) {
     Float m = clamp(Float(1.0f) - cos_h, Float(0.0f), Float(1.0f));
     Float m5 = m * m * m * m * m;
     Vec3 result = {f0.x + (f90 - f0.x) * m5, f0.y + (f90 - f0.y) * m5, f0.z + (f90 - f0.z) * m5};
@@ -156,7 +158,7 @@ FN Vec3 schlick_fresnel(Vec3 f0, Float f90, Float cos_h) {
 }
 
 /// Both directions above the surface.
-FN BsdfValue evaluate_general_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
+FN BsdfValue evaluate_general_bsdf(const Bsdf b, const Vec3 wo, const Vec3 wi) {
     Float one = Float(1.0f);
     Vec3 h = normalize(wo + wi);
     Float lambda_o = ggx_lambda(b.alpha, wo.z);
@@ -175,7 +177,7 @@ FN BsdfValue evaluate_general_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
 }
 
 /// Value and density of `wi` for light leaving along `wo`; zero when either is below. Unit vectors.
-FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
+FN BsdfValue evaluate_bsdf(const Bsdf b, const Vec3 wo, const Vec3 wi) {
     Float zero = Float(0.0f);
     Bool is_above = wo.z > zero && wi.z > zero;
     BsdfValue result;
@@ -192,7 +194,7 @@ FN BsdfValue evaluate_bsdf(Bsdf b, Vec3 wo, Vec3 wi) {
 }
 
 /// Samples an incoming direction for `wo`: `u_lobe` in [0, 1) selects the lobe, `u` the direction within it.
-FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
+FN BsdfSample sample_bsdf(const Bsdf b, const Vec3 wo, const Float u_lobe, const Vec2 u) {
     Vec3 wi = square_to_cosine_hemisphere(u);
     Bool is_specular = u_lobe < b.specular_probability;
     Vec2 alpha = {b.alpha, b.alpha};
@@ -206,7 +208,7 @@ FN BsdfSample sample_bsdf(Bsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
 }
 
 /// Rounding may put a grazing viewer onto the horizon, where the BSDF is undefined.
-FN Vec3 lift_viewer(Vec3 wo_local) {
+FN Vec3 lift_viewer(const Vec3 wo_local) {
     Vec3 lifted = {wo_local.x, wo_local.y, max(wo_local.z, Float(1e-4f))};
     return normalize(lifted);
 }

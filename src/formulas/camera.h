@@ -25,7 +25,8 @@ struct CameraProjection {
 };
 
 /// `up` must not be parallel to the view axis but may be oblique; `fov` is vertical, radians.
-FN CameraFrame make_camera_frame(Vec3 from, Vec3 to, Vec3 up, Float fov, Vec2 size) {
+FN CameraFrame make_camera_frame(const Vec3 from, const Vec3 to, const Vec3 up, const Float fov,
+                                 const Vec2 size) {
     Vec3 forward = normalize(to - from);
     Vec3 right = normalize(cross(forward, up));
     Vec3 true_up = cross(right, forward);
@@ -39,14 +40,14 @@ FN CameraFrame make_camera_frame(Vec3 from, Vec3 to, Vec3 up, Float fov, Vec2 si
 }
 
 /// Ray through the point `pixel` of the picture (pixel centres at .5) of a camera without an aperture.
-FN CameraRay make_pinhole_ray(CameraFrame camera, Vec2 pixel) {
+FN CameraRay make_pinhole_ray(const CameraFrame camera, const Vec2 pixel) {
     CameraRay result = {camera.origin,
                         normalize(find_picture_point(camera.corner, camera.step_x, camera.step_y, pixel))};
     return result;
 }
 
 /// Ray through `pixel` of the picture (centres at .5); `lens` in [0, 1)^2 is the point of the lens.
-FN CameraRay make_camera_ray(CameraFrame camera, Vec2 pixel, Vec2 lens) {
+FN CameraRay make_camera_ray(const CameraFrame camera, const Vec2 pixel, const Vec2 lens) {
     Vec3 toward = find_picture_point(camera.corner, camera.step_x, camera.step_y, pixel);
     Vec2 disk = square_to_disk(lens);
     Vec3 offset =
@@ -57,7 +58,7 @@ FN CameraRay make_camera_ray(CameraFrame camera, Vec2 pixel, Vec2 lens) {
 }
 
 /// Projection of a point through the pinhole; meaningless for a distance <= 0.
-FN CameraProjection project_point(CameraFrame camera, Vec3 p) {
+FN CameraProjection project_point(const CameraFrame camera, const Vec3 p) {
     Vec3 v = p - camera.origin;
     Float distance = dot(v, camera.forward);
     Vec3 on_plane = v * (Float(1.0f) / distance) - camera.corner;

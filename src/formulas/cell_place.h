@@ -13,7 +13,7 @@ struct CellPlace {
 };
 
 /// Cell that holds (u, v); on a triangle (u, v) is folded into v <= u.
-FN CellPlace locate_cell(bool is_triangle, uint side, float u, float v) {
+FN CellPlace locate_cell(const bool is_triangle, const uint side, const float u, const float v) {
     bool is_folded = is_triangle && v > u;
     CellPlace place;
     place.u = select(is_folded, v, u);
@@ -28,14 +28,16 @@ FN CellPlace locate_cell(bool is_triangle, uint side, float u, float v) {
     return place;
 }
 
-FN CornerWeights weigh_corners(CellPlace place, float side) {
+FN CornerWeights weigh_corners(const CellPlace place, const float side) {
     Vec2 at = {place.u, place.v};
     Vec2 cell = {float(place.i), float(place.j)};
     return weigh_cell_corners(at, cell, place.is_upper, side);
 }
 
 /// Area of one micro-triangle in the patch's (u, v).
-FN float triangle_uv_area(bool is_triangle, float side) { return is_triangle ? 1.0f : 0.5f / (side * side); }
+FN float triangle_uv_area(const bool is_triangle, const float side) {
+    return is_triangle ? 1.0f : 0.5f / (side * side);
+}
 
 #include "formulas/end.h"
 #endif

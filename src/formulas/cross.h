@@ -6,7 +6,7 @@
 #endif
 #include "formulas/begin.h"
 
-FN Vec3 cross_exact(Vec3 a, Vec3 b) {
+FN Vec3 cross_exact(const Vec3 a, const Vec3 b) {
     EXACT Float x = a.y * b.z - a.z * b.y;
     EXACT Float y = a.z * b.x - a.x * b.z;
     EXACT Float z = a.x * b.y - a.y * b.x;

@@ -16,10 +16,10 @@ struct Facets {
     Bool is_stretched; ///< they are not one number
 };
 
-FN Float find_alpha(Float roughness) { return max(roughness * roughness, Float(kMinAlpha)); }
+FN Float find_alpha(const Float roughness) { return max(roughness * roughness, Float(kMinAlpha)); }
 
 /// OpenPBR 1.1, "Microfacet model": the squares of the two widths have one mean, whatever the anisotropy.
-FN Facets make_facets(Float roughness, Float anisotropy) {
+FN Facets make_facets(const Float roughness, const Float anisotropy) {
     Float alpha = find_alpha(roughness);
     Facets f;
     f.alpha.x = alpha;
@@ -35,14 +35,14 @@ FN Facets make_facets(Float roughness, Float anisotropy) {
 }
 
 /// Smith's lambda of GGX; cos_theta > 0.
-FN Float ggx_lambda(Float alpha, Float cos_theta) {
+FN Float ggx_lambda(const Float alpha, const Float cos_theta) {
     Float cos2 = cos_theta * cos_theta;
     Float tan2 = max(Float(0.0f), Float(1.0f) - cos2) / cos2;
     return Float(0.5f) * (sqrt(Float(1.0f) + alpha * alpha * tan2) - Float(1.0f));
 }
 
 /// The same for any direction above the surface.
-FN Float facets_lambda(Facets f, Vec3 w) {
+FN Float facets_lambda(const Facets f, const Vec3 w) {
     Float lambda = ggx_lambda(f.alpha.x, w.z);
     if (is_any(f.is_stretched)) {
         Float x = f.alpha.x * w.x;
@@ -55,7 +55,7 @@ FN Float facets_lambda(Facets f, Vec3 w) {
 }
 
 /// Normal distribution; h a unit vector. Avoids 1 - h.z^2, which suffers cancellation for smooth surfaces.
-FN Float ggx_distribution(Vec2 alpha, Vec3 h) {
+FN Float ggx_distribution(const Vec2 alpha, const Vec3 h) {
     Float x = h.x / alpha.x;
     Float y = h.y / alpha.y;
     Float k = x * x + y * y + h.z * h.z;
@@ -63,7 +63,7 @@ FN Float ggx_distribution(Vec2 alpha, Vec3 h) {
 }
 
 /// A visible microfacet normal (Dupuy and Benyoub 2023, spherical caps).
-FN Vec3 sample_ggx_normal(Vec2 alpha, Vec3 wo, Vec2 u) {
+FN Vec3 sample_ggx_normal(const Vec2 alpha, const Vec3 wo, const Vec2 u) {
     Vec3 stretched = {alpha.x * wo.x, alpha.y * wo.y, wo.z};
     Vec3 o = normalize(stretched);
     SinCos phi = find_sin_cos(Float(2.0f * kPi) * u.x);
@@ -75,20 +75,20 @@ FN Vec3 sample_ggx_normal(Vec2 alpha, Vec3 wo, Vec2 u) {
 }
 
 /// Reflection of `wo` at such a normal.
-FN Vec3 sample_ggx_reflection(Vec2 alpha, Vec3 wo, Vec2 u) {
+FN Vec3 sample_ggx_reflection(const Vec2 alpha, const Vec3 wo, const Vec2 u) {
     Vec3 h = sample_ggx_normal(alpha, wo, u);
     return h * (Float(2.0f) * dot(wo, h)) - wo;
 }
 
 /// Square of the cosine of a direction's azimuth about the tangent; along the normal 0.
-FN Float find_azimuth(Vec3 w) {
+FN Float find_azimuth(const Vec3 w) {
     Float x2 = w.x * w.x;
     return min(x2 / max(x2 + w.y * w.y, Float(1e-20f)), Float(1.0f));
 }
 
 /// Roughness of facets of one width that reflect at least about as much of the light from `w` as those of two
 /// do: across the tangent they have the lesser one, along it the greater one.
-FN Float find_seen_roughness(Float roughness, Float anisotropy, Vec3 w) {
+FN Float find_seen_roughness(const Float roughness, const Float anisotropy, const Vec3 w) {
     Float seen = roughness;
     if (is_any(anisotropy > Float(0.0f))) {
         Facets f = make_facets(roughness, anisotropy);

@@ -11,18 +11,18 @@ const float kFineUnit = 32767.0f;
 const float kCoarseUnit = 16383.0f;
 
 /// Signed integer in the lowest `width` bits, divided by `scale`.
-FN float dequantize_unit(uint bits, uint width, float scale) {
+FN float dequantize_unit(const uint bits, const uint width, const float scale) {
     EXACT float value = float(int(bits << (32u - width)) >> int(32u - width)) / scale;
     return clamp(value, -1.0f, 1.0f);
 }
 
-FN Vec2 unpack_octahedron(uint packed_normal) {
+FN Vec2 unpack_octahedron(const uint packed_normal) {
     Vec2 folded = {dequantize_unit(packed_normal & 0xffffu, 16u, kFineUnit),
                    dequantize_unit(packed_normal >> 16u, 16u, kFineUnit)};
     return folded;
 }
 
-FN Vec3 unpack_unit_normal(uint packed_normal) {
+FN Vec3 unpack_unit_normal(const uint packed_normal) {
     Vec2 folded = unpack_octahedron(packed_normal);
     return unfold_octahedron(folded.x, folded.y);
 }
@@ -33,12 +33,12 @@ struct TangentFrame {
 };
 
 /// The tangent alone, not quite at right angles to the normal.
-FN Vec3 unpack_tangent(uint packed_tangent) {
+FN Vec3 unpack_tangent(const uint packed_tangent) {
     return unfold_octahedron(dequantize_unit((packed_tangent >> 1u) & 0x7fffu, 15u, kCoarseUnit),
                              dequantize_unit(packed_tangent >> 16u, 16u, kFineUnit));
 }
 
-FN TangentFrame unpack_tangent_frame(uint packed_normal, uint packed_tangent) {
+FN TangentFrame unpack_tangent_frame(const uint packed_normal, const uint packed_tangent) {
     TangentFrame frame;
     frame.n = unpack_unit_normal(packed_normal);
     Vec3 t = unpack_tangent(packed_tangent);

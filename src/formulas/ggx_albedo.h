@@ -12,11 +12,11 @@ struct GgxAlbedo {
 };
 
 /// Between entries a and b.
-FN Vec2 blend_ggx_entries(Uint a, Uint b, Float f) {
+FN Vec2 blend_ggx_entries(const Uint a, const Uint b, const Float f) {
     return read_ggx_table(a) * (Float(1.0f) - f) + read_ggx_table(b) * f;
 }
 
-FN GgxAlbedo lookup_ggx_albedo(Float roughness, Float cos_theta) {
+FN GgxAlbedo lookup_ggx_albedo(const Float roughness, const Float cos_theta) {
     Float y = clamp(roughness, Float(0.0f), Float(1.0f)) * Float(15.0f);
     Float x = sqrt(clamp(cos_theta, Float(0.0f), Float(1.0f))) * Float(15.0f);
     Float row = min(floor(y), Float(14.0f));
@@ -30,7 +30,7 @@ FN GgxAlbedo lookup_ggx_albedo(Float roughness, Float cos_theta) {
 }
 
 /// Cosine-weighted mean over the hemisphere.
-FN GgxAlbedo lookup_ggx_average(Float roughness) {
+FN GgxAlbedo lookup_ggx_average(const Float roughness) {
     Float y = clamp(roughness, Float(0.0f), Float(1.0f)) * Float(15.0f);
     Float row = min(floor(y), Float(14.0f));
     Uint i = Uint(kGgxAverages) + Uint(row);

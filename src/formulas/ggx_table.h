@@ -56,7 +56,7 @@ const uint kGgxEntryCount = 272u;
 
 #ifdef __cplusplus
 /// Scale and bias of an entry. Kernels read the same numbers from memory (vulkan/shaders/ggx_table.glsl).
-FN Vec2 read_ggx_table(uint i) {
+FN Vec2 read_ggx_table(const uint i) {
     Vec2 result = {kGgxScale[i], kGgxBias[i]};
     return result;
 }

@@ -16,7 +16,7 @@ struct Refraction {
 };
 
 /// `cosine`: of the incident direction, >= 0; `ior`: of the far side over the near one.
-FN Refraction refract_at(Float cosine, Float ior) {
+FN Refraction refract_at(const Float cosine, const Float ior) {
     Float one = Float(1.0f);
     Float sine2 = max(Float(0.0f), one - cosine * cosine) / (ior * ior);
     Float refracted = sqrt(max(Float(0.0f), one - sine2));
@@ -28,7 +28,7 @@ FN Refraction refract_at(Float cosine, Float ior) {
 }
 
 /// What is left of light after ways through a medium.
-FN Vec3 absorb_along(Vec3 depth, Float way) {
+FN Vec3 absorb_along(const Vec3 depth, const Float way) {
     Float back = Float(0.0f) - min(way, Float(1e30f));
     Vec3 left = {find_power_of_two(depth.x * back), find_power_of_two(depth.y * back),
                  find_power_of_two(depth.z * back)};
@@ -42,7 +42,7 @@ struct WallLight {
 };
 
 /// x: sent back, y: let through; `left`: of light once through the wall.
-FN Vec2 sum_up_reflections(Float fresnel, Float left) {
+FN Vec2 sum_up_reflections(const Float fresnel, const Float left) {
     Float one = Float(1.0f);
     Float through = one - fresnel;
     Float passed = through * through * left / max(one - fresnel * fresnel * left * left, Float(1e-6f));
@@ -50,7 +50,7 @@ FN Vec2 sum_up_reflections(Float fresnel, Float left) {
     return result;
 }
 
-FN WallLight meet_wall(GlassParameters g, Float cosine) {
+FN WallLight meet_wall(const GlassParameters g, const Float cosine) {
     Refraction face = refract_at(cosine, g.ior);
     Vec3 left = absorb_along(g.depth, Float(1.0f) / max(face.cosine, Float(1e-6f)));
     Vec2 x = sum_up_reflections(face.reflected, left.x);

@@ -25,7 +25,7 @@ struct FacetLight {
     Float cosine; ///< of the refracted direction
 };
 
-FN GlassBsdf make_glass_bsdf(GlassParameters g, Float roughness, Bool is_inside) {
+FN GlassBsdf make_glass_bsdf(const GlassParameters g, const Float roughness, const Bool is_inside) {
     Bool is_leaving = is_inside && g.kind < Float(kRoughWall);
     GlassBsdf b;
     b.facets = make_facets(roughness, g.anisotropy);
@@ -36,7 +36,7 @@ FN GlassBsdf make_glass_bsdf(GlassParameters g, Float roughness, Bool is_inside)
 }
 
 /// A clear wall reflects all that comes here: what passes it never does (formulas/glass_vertex.h).
-FN FacetLight meet_facet(GlassBsdf b, Float cosine) {
+FN FacetLight meet_facet(const GlassBsdf b, const Float cosine) {
     Float one = Float(1.0f);
     Refraction face = refract_at(cosine, b.ior);
     FacetLight light;
@@ -58,7 +58,7 @@ FN FacetLight meet_facet(GlassBsdf b, Float cosine) {
 }
 
 /// Value and density of `wi`, on either side, for light that leaves along `wo`, above. Unit vectors.
-FN BsdfValue evaluate_glass_bsdf(GlassBsdf b, Vec3 wo, Vec3 wi) {
+FN BsdfValue evaluate_glass_bsdf(const GlassBsdf b, const Vec3 wo, const Vec3 wi) {
     Float one = Float(1.0f);
     Float zero = Float(0.0f);
     Bool is_reflected = wi.z > zero;
@@ -91,7 +91,7 @@ FN BsdfValue evaluate_glass_bsdf(GlassBsdf b, Vec3 wo, Vec3 wi) {
 }
 
 /// Samples an incoming direction for `wo`: `u_lobe` in [0, 1) selects reflection or not, `u` the facet.
-FN BsdfSample sample_glass_bsdf(GlassBsdf b, Vec3 wo, Float u_lobe, Vec2 u) {
+FN BsdfSample sample_glass_bsdf(const GlassBsdf b, const Vec3 wo, const Float u_lobe, const Vec2 u) {
     Float zero = Float(0.0f);
     Vec3 h = sample_ggx_normal(b.facets.alpha, wo, u);
     Float cos_o = max(dot(wo, h), zero);

@@ -14,18 +14,19 @@ struct GlassDraw {
     Vec3 weight;    ///< of the path
 };
 
-FN Float largest_component(Vec3 color) { return max(max(color.x, color.y), color.z); }
+FN Float largest_component(const Vec3 color) { return max(max(color.x, color.y), color.z); }
 
 /// What of the light passes a clear wall of that opacity straight on. `cosine`: of the ray to the geometric
 /// normal, for whoever meets the wall finds its own share by it too.
-FN Vec3 pass_clear_wall(GlassParameters g, Float metallic, Float opacity, Float cosine) {
+FN Vec3 pass_clear_wall(const GlassParameters g, const Float metallic, const Float opacity,
+                        const Float cosine) {
     Float share = opacity * g.weight * (1.0f - metallic);
     return make_grey(1.0f - opacity) + meet_wall(g, cosine).passed * share;
 }
 
 /// `u` in [0, 1) draws. Probabilities are by what each of the two reflects, given that a clear wall was not
 /// passed, which its largest component of pass_clear_wall at opacity 1 decides.
-FN GlassDraw draw_glass(GlassParameters g, Float metallic, Float cosine, Float u) {
+FN GlassDraw draw_glass(const GlassParameters g, const Float metallic, const Float cosine, const Float u) {
     Float share = g.weight * (1.0f - metallic);
     Float rest = 1.0f - share;
     GlassDraw drawn;

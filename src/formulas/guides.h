@@ -21,19 +21,19 @@ struct GuideVertex {
 };
 
 /// The path goes on for its guides.
-FN bool is_mirror(GuideVertex v) {
+FN bool is_mirror(const GuideVertex v) {
     return v.roughness < kMirrorRoughness && (v.is_glass || v.metallic > kMirrorMetallic);
 }
 
 /// `throughput` of the path up to what has the colour; in [0, 1].
-FN Vec3 find_guide_albedo(Vec3 throughput, Vec3 color) {
+FN Vec3 find_guide_albedo(const Vec3 throughput, const Vec3 color) {
     Vec3 seen = limit_color(color);
     Vec3 albedo = {throughput.x * seen.x, throughput.y * seen.y, throughput.z * seen.z};
     return limit_color(albedo);
 }
 
 /// Glass is white: its colours are in the throughput of what goes through.
-FN Vec3 find_guide_color(GuideVertex v) {
+FN Vec3 find_guide_color(const GuideVertex v) {
     Vec3 white = {1.0f, 1.0f, 1.0f};
     if (v.is_glass) return white;
     return v.base_color + v.emission;

@@ -40,13 +40,13 @@ struct InputConstants {
     uint is_absorbing; ///< a body of glass that its transmission_color belongs to, not to its surface
 };
 
-FN Vec3 get_input_color(InputNumbers numbers, uint place) {
+FN Vec3 get_input_color(InputNumbers numbers, const uint place) {
     Vec3 color = {numbers.word[place], numbers.word[place + 1u], numbers.word[place + 2u]};
     return color;
 }
 
 /// `value` of a texture for `count` words from `place` on, all of one number where they are three.
-FN InputNumbers apply_input(InputNumbers numbers, uint place, uint count, Vec3 value) {
+FN InputNumbers apply_input(InputNumbers numbers, const uint place, const uint count, const Vec3 value) {
     if (place == kInputNormal) {
         numbers.word[kInputNormal] = value.x;
         numbers.word[kInputNormal + 1u] = value.y;
@@ -68,16 +68,16 @@ FN InputNumbers limit_inputs(InputNumbers numbers) {
 }
 
 /// Fresnel's reflection at normal incidence between two indices of refraction.
-FN float find_normal_reflection(float ratio) {
+FN float find_normal_reflection(const float ratio) {
     float root = (ratio - 1.0f) / (ratio + 1.0f);
     return root * root;
 }
 
 /// As in make_general_bsdf: the surface fades out together with its reflection at normal incidence.
-FN float find_grazing_reflection(float f0) { return min(1.0f, 50.0f * f0); }
+FN float find_grazing_reflection(const float f0) { return min(1.0f, 50.0f * f0); }
 
 /// -log2 of what a length of 1 / `share` leaves over of a colour.
-FN Vec3 find_color_depth(Vec3 color, float share) {
+FN Vec3 find_color_depth(const Vec3 color, const float share) {
     Vec3 depth = {-share * find_logarithm(max(color.x, 1e-12f)),
                   -share * find_logarithm(max(color.y, 1e-12f)),
                   -share * find_logarithm(max(color.z, 1e-12f))};
@@ -86,7 +86,8 @@ FN Vec3 find_color_depth(Vec3 color, float share) {
 
 /// All but what belongs to the albedo table, and fuzz_scale. A coat under which the light comes from its
 /// medium: OpenPBR 1.1, "Coat": refraction.
-FN LayerParameters set_layer_inputs(LayerParameters l, InputNumbers numbers, InputConstants constants) {
+FN LayerParameters set_layer_inputs(LayerParameters l, const InputNumbers numbers,
+                                    const InputConstants constants) {
     l.specular_color = get_input_color(numbers, kInputSpecularColor);
     l.specular_weight = numbers.word[kInputSpecularWeight];
     l.metallic = numbers.word[kInputMetallic];
@@ -104,7 +105,8 @@ FN LayerParameters set_layer_inputs(LayerParameters l, InputNumbers numbers, Inp
     return l;
 }
 
-FN GlassParameters set_glass_inputs(GlassParameters g, InputNumbers numbers, InputConstants constants) {
+FN GlassParameters set_glass_inputs(GlassParameters g, const InputNumbers numbers,
+                                    const InputConstants constants) {
     g.weight = numbers.word[kInputTransmissionWeight];
     g.specular_color = get_input_color(numbers, kInputSpecularColor);
     Vec3 color = get_input_color(numbers, kInputTransmissionColor);

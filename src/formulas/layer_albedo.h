@@ -9,7 +9,7 @@
 #include "formulas/begin.h"
 
 /// Between two entries side by side. Loops here and below leave shaders with one copy of the look-up.
-FN Vec2 blend_layer_pair(LayerTable table, Uint i, Float f) {
+FN Vec2 blend_layer_pair(const LayerTable table, const Uint i, const Float f) {
     Vec2 sum = {Float(0.0f), Float(0.0f)};
     for (int k = 0; k < 2; ++k)
         sum = sum + read_layer_entry(table, i + Uint(k)) * (k == 0 ? Float(1.0f) - f : f);
@@ -17,19 +17,20 @@ FN Vec2 blend_layer_pair(LayerTable table, Uint i, Float f) {
 }
 
 /// Of one row: kLayerColumns entries over the square root of the cosine.
-FN Vec2 blend_layer_entries(LayerTable table, Uint row, Float cos_theta) {
+FN Vec2 blend_layer_entries(const LayerTable table, const Uint row, const Float cos_theta) {
     Float x = sqrt(clamp(cos_theta, Float(0.0f), Float(1.0f))) * Float(kLayerColumns - 1.0f);
     Float column = min(floor(x), Float(kLayerColumns - 2.0f));
     Uint i = row + Uint(column);
     return blend_layer_pair(table, i, x - column);
 }
 
-FN Float find_layer_row(LayerParameters layers, Float roughness) {
+FN Float find_layer_row(const LayerParameters layers, const Float roughness) {
     return clamp(roughness, Float(0.0f), Float(1.0f)) * layers.row_scale;
 }
 
 /// Between two rows, the second of which comes right behind.
-FN Vec2 blend_layer_rows_at(LayerTable table, Uint first, Float fraction, Float cos_theta) {
+FN Vec2 blend_layer_rows_at(const LayerTable table, const Uint first, const Float fraction,
+                            const Float cos_theta) {
     Vec2 sum = {Float(0.0f), Float(0.0f)};
     for (int k = 0; k < 2; ++k)
         sum = sum + blend_layer_entries(table, first + Uint(k) * Uint(kLayerColumnCount), cos_theta) *
@@ -38,11 +39,12 @@ FN Vec2 blend_layer_rows_at(LayerTable table, Uint first, Float fraction, Float 
 }
 
 /// Azimuths lie close together across the tangent, where narrow facets change most.
-FN Float find_azimuth_row(Float azimuth) { return sqrt(sqrt(azimuth)); }
+FN Float find_azimuth_row(const Float azimuth) { return sqrt(sqrt(azimuth)); }
 
 /// The part of the light from a direction that all lobes scattered once leave in a material that absorbs
 /// nothing: x of a dielectric, y of a metal.
-FN Vec2 lookup_layer_rest(LayerTable table, LayerParameters layers, Float roughness, Vec3 w) {
+FN Vec2 lookup_layer_rest(const LayerTable table, const LayerParameters layers, const Float roughness,
+                          const Vec3 w) {
     Float y = find_layer_row(layers, roughness);
     Float row = min(floor(y), max(layers.row_scale - Float(1.0f), Float(0.0f)));
     Uint first = layers.first_entry + Uint(row * Float(kLayerColumns));
@@ -65,12 +67,12 @@ FN Vec2 lookup_layer_rest(LayerTable table, LayerParameters layers, Float roughn
 }
 
 /// Of all azimuths and roughnesses of a block.
-FN Float count_layer_rows(LayerParameters layers) {
+FN Float count_layer_rows(const LayerParameters layers) {
     return (layers.azimuth_scale + Float(1.0f)) * (layers.row_scale + Float(1.0f));
 }
 
 /// Its cosine-weighted mean over the hemisphere.
-FN Vec2 lookup_layer_average(LayerTable table, LayerParameters layers, Float roughness) {
+FN Vec2 lookup_layer_average(const LayerTable table, const LayerParameters layers, const Float roughness) {
     Float y = find_layer_row(layers, roughness);
     Float row = min(floor(y), max(layers.row_scale - Float(1.0f), Float(0.0f)));
     Float first = count_layer_rows(layers) * Float(kLayerColumns) + row;
@@ -79,7 +81,7 @@ FN Vec2 lookup_layer_average(LayerTable table, LayerParameters layers, Float rou
 }
 
 /// Directional albedo of the fuzz of weight 1.
-FN Float lookup_fuzz_albedo(LayerTable table, LayerParameters layers, Float cos_theta) {
+FN Float lookup_fuzz_albedo(const LayerTable table, const LayerParameters layers, const Float cos_theta) {
     Float first = count_layer_rows(layers) * Float(kLayerColumns) + layers.row_scale + Float(1.0f);
     return blend_layer_entries(table, layers.first_entry + Uint(first), cos_theta).x;
 }

@@ -7,7 +7,7 @@
 #include "formulas/begin.h"
 
 /// Between the rows around a point; `first`: the entry of row 0, `stride` from row to row.
-FN Vec2 blend_layer_rows(GridTable table, LayerPlace place, uint first, uint stride) {
+FN Vec2 blend_layer_rows(const GridTable table, const LayerPlace place, const uint first, const uint stride) {
     Vec2 sum = {0.0f, 0.0f};
     for (uint tap = 0u; tap < (1u << place.axis_count); ++tap) {
         uint row = place.row;
@@ -23,10 +23,10 @@ FN Vec2 blend_layer_rows(GridTable table, LayerPlace place, uint first, uint str
 }
 
 /// Place of the average in the block that a point has; the fuzz follows.
-FN uint find_block_average(uint azimuth_count) { return azimuth_count * kLayerColumnCount; }
+FN uint find_block_average(const uint azimuth_count) { return azimuth_count * kLayerColumnCount; }
 
 /// Entry `i` of the block that a point has.
-FN Vec2 blend_layer_block(GridTable table, LayerPlace place, uint i) {
+FN Vec2 blend_layer_block(const GridTable table, const LayerPlace place, const uint i) {
     uint average = find_block_average(place.azimuth_count);
     uint averages = place.first_entry + place.row_count * average;
     if (i < average) {

@@ -35,7 +35,7 @@ struct LayerPlace {
     float fuzz_fraction;
 };
 
-FN LayerPlace place_layers(LayerGrid grid, uint first_entry, InputNumbers numbers) {
+FN LayerPlace place_layers(const LayerGrid grid, const uint first_entry, const InputNumbers numbers) {
     LayerPlace place;
     place.first_entry = first_entry;
     place.row_count = grid.row_count;

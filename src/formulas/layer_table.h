@@ -14,11 +14,11 @@ struct LayerTable {
 };
 
 /// Kernels read the same numbers from memory of their own (vulkan/shaders/ggx_table.glsl).
-FN Vec2 read_layer_entry(LayerTable table, uint i) { return table.entries[i]; }
+FN Vec2 read_layer_entry(const LayerTable table, const uint i) { return table.entries[i]; }
 
 /// The same where kernels put a table together from blocks of this one (layer_grid.h).
 using GridTable = LayerTable;
-FN Vec2 read_grid_entry(GridTable table, uint i) { return table.entries[i]; }
+FN Vec2 read_grid_entry(const GridTable table, const uint i) { return table.entries[i]; }
 #endif
 
 #include "formulas/end.h"

@@ -53,19 +53,19 @@ struct LayeredBsdf {
     LobeShares shares;
 };
 
-FN Vec3 multiply_colors(Vec3 a, Vec3 b) {
+FN Vec3 multiply_colors(const Vec3 a, const Vec3 b) {
     Vec3 product = {a.x * b.x, a.y * b.y, a.z * b.z};
     return product;
 }
 
-FN Vec3 blend_from_one(Vec3 color, Float weight) {
+FN Vec3 blend_from_one(const Vec3 color, const Float weight) {
     Float rest = Float(1.0f) - weight;
     Vec3 result = {rest + color.x * weight, rest + color.y * weight, rest + color.z * weight};
     return result;
 }
 
 /// A rough coat blurs what lies below (OpenPBR 1.1, "Coat": roughening).
-FN Float roughen_base(Float roughness, LayerParameters l) {
+FN Float roughen_base(const Float roughness, const LayerParameters l) {
     Float base2 = roughness * roughness;
     Float coat2 = l.coat_roughness * l.coat_roughness;
     Float sum = min(base2 * base2 + Float(2.0f) * coat2 * coat2, Float(1.0f));
@@ -73,7 +73,8 @@ FN Float roughen_base(Float roughness, LayerParameters l) {
 }
 
 /// `roughness`: of the base under the coat.
-FN LayerTerms make_layer_terms(LayeredSurface s, LayerTable table, Float roughness, Vec3 w) {
+FN LayerTerms make_layer_terms(const LayeredSurface s, const LayerTable table, const Float roughness,
+                               const Vec3 w) {
     Float one = Float(1.0f);
     Float zero = Float(0.0f);
     LayerParameters l = s.layers;
@@ -101,7 +102,7 @@ FN LayerTerms make_layer_terms(LayeredSurface s, LayerTable table, Float roughne
 }
 
 /// What is left of light that goes down and up through the coat.
-FN Vec3 pass_coat_color(LayerParameters l, Float path_o, Float path_i) {
+FN Vec3 pass_coat_color(const LayerParameters l, const Float path_o, const Float path_i) {
     Float way = Float(0.0f) - path_o - path_i;
     Vec3 result = {find_power_of_two(l.coat_depth.x * way), find_power_of_two(l.coat_depth.y * way),
                    find_power_of_two(l.coat_depth.z * way)};
@@ -109,31 +110,31 @@ FN Vec3 pass_coat_color(LayerParameters l, Float path_o, Float path_i) {
 }
 
 /// Mean albedo of the base over all directions.
-FN Float average_base(Float color, Float metal, Float tint, LayerParameters l) {
+FN Float average_base(const Float color, const Float metal, const Float tint, const LayerParameters l) {
     Float specular = average_fresnel(l.dielectric_f0, l.dielectric_f90);
     Float dielectric = specular * tint + (Float(1.0f) - specular) * color;
     return dielectric + (metal - dielectric) * l.metallic;
 }
 
 /// Light that the coat reflects back onto the base (OpenPBR 1.1, "Coat": darkening). For `albedo` 1 it is 1.
-FN Float darken_base(Float albedo, Float inside, Float amount) {
+FN Float darken_base(const Float albedo, const Float inside, const Float amount) {
     Float full = (Float(1.0f) - inside) / max(Float(1e-6f), Float(1.0f) - albedo * inside);
     return Float(1.0f) + (full - Float(1.0f)) * amount;
 }
 
 /// Drop of the F82-tint model below Schlick's Fresnel (Kutz, Hasan and Edmondson 2021, Novel aspects of the
 /// Adobe Standard Material, equation 17): times mu (1 - mu)^6; its mean over the hemisphere is 1/126 of it.
-FN Float find_edge(Float f0, Float tint) {
+FN Float find_edge(const Float f0, const Float tint) {
     Float at_edge = f0 + (Float(1.0f) - f0) * Float(0.46266436f); // (6/7)^5
     return at_edge * (Float(1.0f) - tint) * Float(17.651385f);    // 1 / (1/7 (6/7)^6)
 }
 
-FN Float average_metal(Float f0, Float edge) {
+FN Float average_metal(const Float f0, const Float edge) {
     return average_fresnel(f0, Float(1.0f)) - edge * Float(1.0f / 126.0f);
 }
 
 /// Lobes are drawn by their albedos, each that there is by a part in twelve at least. `metal`: of its facets.
-FN LobeShares share_lobes(LayeredSurface s, LayerTerms o, Float metal) {
+FN LobeShares share_lobes(const LayeredSurface s, const LayerTerms o, const Float metal) {
     Float one = Float(1.0f);
     Float zero = Float(0.0f);
     LayerParameters l = s.layers;
@@ -154,7 +155,7 @@ FN LobeShares share_lobes(LayeredSurface s, LayerTerms o, Float metal) {
 }
 
 /// `metal`: mean Fresnel, `average`: mean rests.
-FN RestColors color_rests(LayeredSurface s, Vec3 metal, Vec2 average) {
+FN RestColors color_rests(const LayeredSurface s, const Vec3 metal, const Vec2 average) {
     Float one = Float(1.0f);
     Float metallic = s.layers.metallic;
     Vec3 multiple = {multiple_scattering(metal.x, one - average.y),
@@ -167,7 +168,7 @@ FN RestColors color_rests(LayeredSurface s, Vec3 metal, Vec2 average) {
 }
 
 /// `wo`: the outgoing direction, above the surface.
-FN LayeredBsdf make_layered_bsdf(LayeredSurface s, LayerTable table, Vec3 wo) {
+FN LayeredBsdf make_layered_bsdf(const LayeredSurface s, const LayerTable table, const Vec3 wo) {
     Float one = Float(1.0f);
     LayerParameters l = s.layers;
     Vec3 c = s.base_color;
@@ -202,7 +203,7 @@ FN LayeredBsdf make_layered_bsdf(LayeredSurface s, LayerTable table, Vec3 wo) {
 }
 
 /// Fresnel of metal and dielectric together.
-FN Vec3 layered_fresnel(LayeredBsdf b, Float cos_h) {
+FN Vec3 layered_fresnel(const LayeredBsdf b, const Float cos_h) {
     Float m = clamp(Float(1.0f) - cos_h, Float(0.0f), Float(1.0f));
     Float m2 = m * m;
     Float m5 = m2 * m2 * m;
@@ -217,7 +218,7 @@ FN Vec3 layered_fresnel(LayeredBsdf b, Float cos_h) {
 }
 
 /// A microfacet lobe without its Fresnel: x times the cosine of the incoming direction, y its density.
-FN Vec2 evaluate_facets(Facets f, Vec3 h, Vec3 wo, Vec3 wi) {
+FN Vec2 evaluate_facets(const Facets f, const Vec3 h, const Vec3 wo, const Vec3 wi) {
     Float lambda_o = facets_lambda(f, wo);
     Float lobe = ggx_distribution(f.alpha, h) / (Float(4.0f) * wo.z);
     Vec2 result = {lobe / (Float(1.0f) + lambda_o + facets_lambda(f, wi)), lobe / (Float(1.0f) + lambda_o)};
@@ -226,7 +227,7 @@ FN Vec2 evaluate_facets(Facets f, Vec3 h, Vec3 wo, Vec3 wi) {
 
 /// Charlie: Estevez and Kulla 2017, Production Friendly Microfacet Sheen BRDF, equation 2; what its fibres
 /// hide of each other after Neubelt and Pettineo 2013. Without the cosine.
-FN Float evaluate_fuzz(LayerParameters l, Float cos_h, Float cos_o, Float cos_i) {
+FN Float evaluate_fuzz(const LayerParameters l, const Float cos_h, const Float cos_o, const Float cos_i) {
     Float sine2 = max(Float(1e-12f), Float(1.0f) - cos_h * cos_h);
     Float power = find_power_of_two(Float(0.5f) * l.fuzz_exponent * find_logarithm(sine2));
     Float distribution = (l.fuzz_exponent + Float(2.0f)) * Float(0.5f / kPi) * power;
@@ -234,7 +235,8 @@ FN Float evaluate_fuzz(LayerParameters l, Float cos_h, Float cos_o, Float cos_i)
 }
 
 /// Both directions above the surface.
-FN BsdfValue evaluate_above_layers(LayeredBsdf b, LayerTable table, Vec3 wo, Vec3 wi) {
+FN BsdfValue evaluate_above_layers(const LayeredBsdf b, const LayerTable table, const Vec3 wo,
+                                   const Vec3 wi) {
     Float one = Float(1.0f);
     Float zero = Float(0.0f);
     LayerParameters l = b.surface.layers;
@@ -273,7 +275,8 @@ FN BsdfValue evaluate_above_layers(LayeredBsdf b, LayerTable table, Vec3 wo, Vec
 }
 
 /// Value and density of `wi` for light leaving along `wo`; zero when either is below. Unit vectors.
-FN BsdfValue evaluate_layered_bsdf(LayeredBsdf b, LayerTable table, Vec3 wo, Vec3 wi) {
+FN BsdfValue evaluate_layered_bsdf(const LayeredBsdf b, const LayerTable table, const Vec3 wo,
+                                   const Vec3 wi) {
     Float zero = Float(0.0f);
     Bool is_above = wo.z > zero && wi.z > zero;
     BsdfValue result;
@@ -288,7 +291,8 @@ FN BsdfValue evaluate_layered_bsdf(LayeredBsdf b, LayerTable table, Vec3 wo, Vec
 }
 
 /// Samples an incoming direction for `wo`: `u_lobe` in [0, 1) selects the lobe, `u` the direction within it.
-FN BsdfSample sample_layered_bsdf(LayeredBsdf b, LayerTable table, Vec3 wo, Float u_lobe, Vec2 u) {
+FN BsdfSample sample_layered_bsdf(const LayeredBsdf b, const LayerTable table, const Vec3 wo,
+                                  const Float u_lobe, const Vec2 u) {
     Vec3 wi = square_to_cosine_hemisphere(u);
     Float coat_end = b.shares.base + b.shares.coat;
     Float fuzz_end = coat_end + b.shares.fuzz;

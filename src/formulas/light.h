@@ -4,13 +4,13 @@
 #include "formulas/begin.h"
 
 /// MIS weight of density a against b (Veach 1997, power heuristic, exponent 2); infinite a gives 1.
-FN float power_heuristic(float a, float b) {
+FN float power_heuristic(const float a, const float b) {
     float ratio = b / a;
     return a > 0.0f ? 1.0f / (1.0f + ratio * ratio) : 0.0f;
 }
 
 /// 1 - cos of the half angle that a sphere subtends; 2, all directions, from inside.
-FN float sphere_cone_height(float radius, float distance) {
+FN float sphere_cone_height(const float radius, const float distance) {
     float s = radius / distance;
     float s2 = s * s;
     // 1 - sqrt(1 - s2) without cancellation.
@@ -19,7 +19,7 @@ FN float sphere_cone_height(float radius, float distance) {
 
 /// Distance along the unit vector d from a point to a sphere whose centre is at `center` from it: where the
 /// ray enters, or leaves from inside; negative for a miss.
-FN float sphere_distance(Vec3 center, float radius, Vec3 d) {
+FN float sphere_distance(const Vec3 center, const float radius, const Vec3 d) {
     float along = dot(center, d);
     Vec3 across = center - d * along;
     float half_chord2 = radius * radius - dot(across, across);

@@ -22,7 +22,7 @@ struct LightShares {
 };
 
 /// Of light that the first surface scatters; `bounces`: what is between it and the light.
-FN uint find_light_kind(uint lobe, uint bounces) { return 2u * lobe + (bounces > 0u ? 1u : 0u); }
+FN uint find_light_kind(const uint lobe, const uint bounces) { return 2u * lobe + (bounces > 0u ? 1u : 0u); }
 
 #include "formulas/end.h"
 #endif

@@ -55,7 +55,7 @@ struct LightSeen {
 };
 
 /// Whether an instance is in a set, by the word of the set that it belongs to: word `instance` / 32.
-FN bool is_in_set(uint word, uint instance) { return ((word >> (instance & 31u)) & 1u) != 0u; }
+FN bool is_in_set(const uint word, const uint instance) { return ((word >> (instance & 31u)) & 1u) != 0u; }
 
 /// Of a flat light; of the disc that a sphere looks like.
 FN float shape_area(In(LightSourceData) source) {
@@ -68,21 +68,21 @@ FN bool is_flat(In(LightSourceData) source) {
 }
 
 /// Part of its strength that a spot sends at an angle of 1 - cos = `height` to its axis.
-FN float spot_falloff(In(LightSourceData) source, float height) {
+FN float spot_falloff(In(LightSourceData) source, const float height) {
     float x = clamp((source.cone - height) / max(source.cone - source.edge, 1e-30f), 0.0f, 1.0f);
     return x * x * (3.0f - 2.0f * x);
 }
 
 /// Of light that travels against `direction`, the way in which the light is seen; 1 for other lights. All
 /// points of a spot's sphere shine alike.
-FN float direction_falloff(In(LightSourceData) source, Vec3 direction) {
+FN float direction_falloff(In(LightSourceData) source, const Vec3 direction) {
     // 1 - cos from the chord between the unit vectors, exact for small angles.
     Vec3 chord = direction + source.basis.n;
     return source.kind == kSourceSpot ? spot_falloff(source, 0.5f * dot(chord, chord)) : 1.0f;
 }
 
 /// The largest falloff over the sphere of a spot, whose centre is at `to`.
-FN float largest_falloff(In(LightSourceData) source, Vec3 to) {
+FN float largest_falloff(In(LightSourceData) source, const Vec3 to) {
     float distance = max(length(to), 1e-30f);
     Vec3 direction = to / distance;
     if (source.radius == 0.0f) return direction_falloff(source, direction);
@@ -96,7 +96,7 @@ FN float largest_falloff(In(LightSourceData) source, Vec3 to) {
 }
 
 /// A point of a flat light, relative to its centre, nearest to a place given in its basis.
-FN Vec3 nearest_on_light(In(LightSourceData) source, Vec3 place) {
+FN Vec3 nearest_on_light(In(LightSourceData) source, const Vec3 place) {
     float across = sqrt(place.x * place.x + place.y * place.y);
     float shrink = min(1.0f, source.radius / max(across, 1e-30f));
     Vec3 on_disk = {place.x * shrink, place.y * shrink, 0.0f};
@@ -108,7 +108,7 @@ FN Vec3 nearest_on_light(In(LightSourceData) source, Vec3 place) {
 /// Radiance times about the solid angle of a flat light: like one of its area all at its nearest point, and
 /// towards 2 pi where that is near. Rather too much, which costs samples, than far too little, which is
 /// noise.
-FN float estimate_flat_irradiance(In(LightSourceData) source, Vec3 to) {
+FN float estimate_flat_irradiance(In(LightSourceData) source, const Vec3 to) {
     Vec3 place = to_local(source.basis, to) * -1.0f;
     Vec3 away = place - nearest_on_light(source, place);
     float distance2 = dot(away, away);
@@ -116,7 +116,7 @@ FN float estimate_flat_irradiance(In(LightSourceData) source, Vec3 to) {
     return source.power * max(cosine, 0.0f) / max(distance2 + source.radius2, 1e-30f);
 }
 
-FN float estimate_irradiance(In(LightSourceData) source, Vec3 position) {
+FN float estimate_irradiance(In(LightSourceData) source, const Vec3 position) {
     Vec3 to = source.center - position;
     if (is_flat(source)) return estimate_flat_irradiance(source, to);
     if (source.kind == kSourceSpot)
@@ -133,7 +133,7 @@ FN Vec3 shape_radiance(In(LightSourceData) source) {
     return source.color * (source.strength / measure);
 }
 
-FN LightDraw draw_sun(In(LightSourceData) source, Vec2 u) {
+FN LightDraw draw_sun(In(LightSourceData) source, const Vec2 u) {
     LightDraw drawn = {source.basis.n, make_infinity(), source.color * source.strength, make_infinity()};
     if (source.cone == 0.0f) return drawn;
     drawn.pdf = cone_pdf(source.cone);
@@ -142,7 +142,7 @@ FN LightDraw draw_sun(In(LightSourceData) source, Vec2 u) {
     return drawn;
 }
 
-FN LightDraw draw_point_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
+FN LightDraw draw_point_light(In(LightSourceData) source, const Vec3 position, const Vec2 u) {
     Vec3 to = source.center - position;
     float distance = length(to);
     LightDraw drawn = {to, distance, to, 0.0f};
@@ -165,7 +165,7 @@ FN LightDraw draw_point_light(In(LightSourceData) source, Vec3 position, Vec2 u)
     return drawn;
 }
 
-FN LightDraw draw_spot_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
+FN LightDraw draw_spot_light(In(LightSourceData) source, const Vec3 position, const Vec2 u) {
     LightDraw drawn = draw_point_light(source, position, u);
     drawn.weight = drawn.weight * direction_falloff(source, drawn.direction);
     return drawn;
@@ -173,7 +173,7 @@ FN LightDraw draw_spot_light(In(LightSourceData) source, Vec3 position, Vec2 u) 
 
 /// Density per solid angle of a point on a flat light of that area, from which the one that is lit lies
 /// `facing` in front of its plane.
-FN float flat_density(float distance, float facing, float area) {
+FN float flat_density(const float distance, const float facing, const float area) {
     float cube = distance * distance * distance;
     float divisor = facing * area;
     // Either is beyond all floats before the density is, of lights far away.
@@ -182,7 +182,7 @@ FN float flat_density(float distance, float facing, float area) {
 }
 
 /// By area. Density 0 behind the light, which shines to one side.
-FN LightDraw draw_flat_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
+FN LightDraw draw_flat_light(In(LightSourceData) source, const Vec3 position, const Vec2 u) {
     Vec2 round = square_to_disk(u);
     bool is_disk = source.kind == kSourceDisk;
     float x = is_disk ? round.x * source.radius : (2.0f * u.x - 1.0f) * source.half_width;
@@ -199,7 +199,7 @@ FN LightDraw draw_flat_light(In(LightSourceData) source, Vec3 position, Vec2 u) 
 }
 
 /// Of a light of the scene's list: neither the environment nor emissive surfaces.
-FN LightDraw draw_listed_light(In(LightSourceData) source, Vec3 position, Vec2 u) {
+FN LightDraw draw_listed_light(In(LightSourceData) source, const Vec3 position, const Vec2 u) {
     if (source.kind == kSourceSun) return draw_sun(source, u);
     if (source.kind == kSourceSpot) return draw_spot_light(source, position, u);
     if (source.kind == kSourcePoint) return draw_point_light(source, position, u);
@@ -208,7 +208,7 @@ FN LightDraw draw_listed_light(In(LightSourceData) source, Vec3 position, Vec2 u
 
 /// Density per solid angle, from a point `to` away, of a point on an emissive patch selected with
 /// `probability`; `area_per_uv` and `normal` are those of its micro-triangle.
-FN float emitter_density(float probability, float area_per_uv, Vec3 normal, Vec3 to) {
+FN float emitter_density(const float probability, const float area_per_uv, const Vec3 normal, const Vec3 to) {
     float distance2 = dot(to, to);
     float cosine = abs(dot(normal, to)) / sqrt(distance2);
     if (!(cosine > 0.0f) || !(area_per_uv > 0.0f)) return 0.0f;
@@ -216,7 +216,7 @@ FN float emitter_density(float probability, float area_per_uv, Vec3 normal, Vec3
 }
 
 /// The direction towards a point on an emissive patch, with that density.
-FN LightDraw draw_emitter(Vec3 emission, Vec3 to, float pdf) {
+FN LightDraw draw_emitter(const Vec3 emission, const Vec3 to, const float pdf) {
     float distance = length(to);
     LightDraw drawn = {to, distance, emission, 0.0f};
     if (!(distance > 0.0f) || !(pdf > 0.0f) || pdf == make_infinity()) return drawn;
@@ -228,7 +228,7 @@ FN LightDraw draw_emitter(Vec3 emission, Vec3 to, float pdf) {
 
 /// Place in the texture of a flat light of `size` texels, in which a ray from `origin` meets its plane; no
 /// texel beyond the edge takes part.
-FN Vec2 find_face_uv(In(LightSourceData) source, Vec3 origin, Vec3 direction, Vec2 size) {
+FN Vec2 find_face_uv(In(LightSourceData) source, const Vec3 origin, const Vec3 direction, const Vec2 size) {
     Vec3 to = source.center - origin;
     float t = -dot(to, source.basis.n) / max(-dot(direction, source.basis.n), 1e-30f);
     Vec3 place = to_local(source.basis, direction * t - to);
@@ -240,7 +240,8 @@ FN Vec2 find_face_uv(In(LightSourceData) source, Vec3 origin, Vec3 direction, Ve
 }
 
 /// Flat light that a ray hits within `distance`.
-FN LightSeen meet_flat_light(In(LightSourceData) source, Vec3 origin, Vec3 direction, float distance) {
+FN LightSeen meet_flat_light(In(LightSourceData) source, const Vec3 origin, const Vec3 direction,
+                             const float distance) {
     Vec3 to = source.center - origin;
     float facing = -dot(direction, source.basis.n);
     float t = -dot(to, source.basis.n) / max(facing, 1e-30f);
@@ -256,7 +257,8 @@ FN LightSeen meet_flat_light(In(LightSourceData) source, Vec3 origin, Vec3 direc
 }
 
 /// Light of the scene's list that a ray hits within `distance`.
-FN LightSeen meet_light(In(LightSourceData) source, Vec3 origin, Vec3 direction, float distance) {
+FN LightSeen meet_light(In(LightSourceData) source, const Vec3 origin, const Vec3 direction,
+                        const float distance) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
     LightSeen seen = {zero, 0.0f, 0.0f};
     if (source.kind == kSourceSun && source.cone > 0.0f && distance == make_infinity()) {
@@ -280,7 +282,7 @@ FN LightSeen meet_light(In(LightSourceData) source, Vec3 origin, Vec3 direction,
 }
 
 /// What a camera ray sees of a light of the scene's list within `distance`.
-FN Vec3 see_light(In(LightSourceData) source, Vec3 origin, Vec3 direction, float distance) {
+FN Vec3 see_light(In(LightSourceData) source, const Vec3 origin, const Vec3 direction, const float distance) {
     LightSeen seen = meet_light(source, origin, direction, distance);
     return seen.radiance * (source.is_visible != 0u ? 1.0f : 0.0f);
 }

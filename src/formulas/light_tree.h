@@ -48,12 +48,13 @@ const float kContinuedBelow = 0.000244140625f;
 
 /// Cosine of what is left of the angle with `cosine` and `sine` that a cone of half angle `cone` takes from
 /// it; 1: nothing.
-FN float shrink_angle(float cosine, float sine, float cone_cosine, float cone_sine) {
+FN float shrink_angle(const float cosine, const float sine, const float cone_cosine, const float cone_sine) {
     return cosine >= cone_cosine ? 1.0f : cosine * cone_cosine + sine * cone_sine;
 }
 
 /// Bound of the cosine, at the point, of light from anywhere in a sphere that looks as large as a cone.
-FN float bound_received(Vec3 normal, Vec3 direction, float cone_cosine, float cone_sine) {
+FN float bound_received(const Vec3 normal, const Vec3 direction, const float cone_cosine,
+                        const float cone_sine) {
     float cosine = dot(normal, direction);
     float sine = length(cross(normal, direction));
     return max(shrink_angle(cosine, sine, cone_cosine, cone_sine), kLeastCosine);
@@ -61,7 +62,8 @@ FN float bound_received(Vec3 normal, Vec3 direction, float cone_cosine, float co
 
 /// Bound of the part of their strength that lights below a node send against `direction`, in which a point
 /// sees the node's sphere as large as a cone; 0 where all of them are dark.
-FN float bound_sent(In(LightNodeData) node, Vec3 direction, float cone_cosine, float cone_sine) {
+FN float bound_sent(In(LightNodeData) node, const Vec3 direction, const float cone_cosine,
+                    const float cone_sine) {
     float cosine = -dot(node.axis, direction);
     float sine = length(cross(node.axis, direction));
     bool is_spread = cosine >= node.spread_cosine;
@@ -104,18 +106,18 @@ FN float estimate_leaf(In(LightNodeData) node, In(LightSourceData) source, In(Li
 }
 
 /// Part of the draws that the tree gets beside lights that are listed, by the estimates of both.
-FN float find_tree_share(float listed, float tree) {
+FN float find_tree_share(const float listed, const float tree) {
     if (!(tree > 0.0f)) return 0.0f;
     return listed > 0.0f ? max(tree / (tree + listed), kLeastTreeShare) : 1.0f;
 }
 
 /// What is left of a random number in [0, 1) that fell into an interval: again uniform in [0, 1).
-FN float stretch_random(float u, float low, float width) {
+FN float stretch_random(const float u, const float low, const float width) {
     return clamp((u - low) / width, 0.0f, 0.99999994f);
 }
 
 /// Whether a ray may come within `distance` to a light below the node.
-FN bool may_meet(In(LightNodeData) node, Vec3 origin, Vec3 direction, float distance) {
+FN bool may_meet(In(LightNodeData) node, const Vec3 origin, const Vec3 direction, const float distance) {
     Vec3 to = node.center - origin;
     float along = dot(to, direction);
     Vec3 across = to - direction * along;

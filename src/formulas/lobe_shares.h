@@ -7,7 +7,7 @@
 #include "formulas/begin.h"
 
 /// The diffuse part of evaluate_bsdf: of the base under the clear surface.
-FN Vec3 evaluate_diffuse(Bsdf b, Vec3 wo, Vec3 wi) {
+FN Vec3 evaluate_diffuse(const Bsdf b, const Vec3 wo, const Vec3 wi) {
     Float zero = Float(0.0f);
     Float way = wi.z;
     if (is_any(!is_diffuse(b))) {
@@ -20,7 +20,8 @@ FN Vec3 evaluate_diffuse(Bsdf b, Vec3 wo, Vec3 wi) {
 
 /// The diffuse part of evaluate_above_layers: of the dielectric base, with what its layers leave over, and of
 /// the fuzz.
-FN Vec3 evaluate_diffuse_above_layers(LayeredBsdf b, LayerTable table, Vec3 wo, Vec3 wi) {
+FN Vec3 evaluate_diffuse_above_layers(const LayeredBsdf b, const LayerTable table, const Vec3 wo,
+                                      const Vec3 wi) {
     Float one = Float(1.0f);
     Float zero = Float(0.0f);
     LayerParameters l = b.surface.layers;
@@ -43,7 +44,7 @@ FN Vec3 evaluate_diffuse_above_layers(LayeredBsdf b, LayerTable table, Vec3 wo, 
 }
 
 /// The diffuse part of evaluate_layered_bsdf.
-FN Vec3 evaluate_layered_diffuse(LayeredBsdf b, LayerTable table, Vec3 wo, Vec3 wi) {
+FN Vec3 evaluate_layered_diffuse(const LayeredBsdf b, const LayerTable table, const Vec3 wo, const Vec3 wi) {
     Float zero = Float(0.0f);
     Bool is_above = wo.z > zero && wi.z > zero;
     Vec3 result = make_grey(zero);
@@ -51,7 +52,7 @@ FN Vec3 evaluate_layered_diffuse(LayeredBsdf b, LayerTable table, Vec3 wo, Vec3 
     return result;
 }
 
-FN Float find_share(Float part, Float whole) {
+FN Float find_share(const Float part, const Float whole) {
     Float zero = Float(0.0f);
     Float one = Float(1.0f);
     Bool is_lit = whole > zero;
@@ -59,7 +60,7 @@ FN Float find_share(Float part, Float whole) {
 }
 
 /// Of a part of what a surface scatters, in [0, 1] each, so that shares of light add up to it.
-FN Vec3 find_shares(Vec3 part, Vec3 whole) {
+FN Vec3 find_shares(const Vec3 part, const Vec3 whole) {
     Vec3 result = {find_share(part.x, whole.x), find_share(part.y, whole.y), find_share(part.z, whole.z)};
     return result;
 }

@@ -16,7 +16,7 @@ struct LocalStart {
 };
 
 /// What a - b rounds off, exactly (Knuth 1969, The Art of Computer Programming, volume 2, 4.2.2).
-FN Vec3 find_lost_by_subtraction(Vec3 a, Vec3 b, Vec3 difference) {
+FN Vec3 find_lost_by_subtraction(const Vec3 a, const Vec3 b, const Vec3 difference) {
     EXACT Vec3 b_there = a - difference;
     EXACT Vec3 a_there = difference + b_there;
     EXACT Vec3 of_a = a - a_there;
@@ -27,7 +27,7 @@ FN Vec3 find_lost_by_subtraction(Vec3 a, Vec3 b, Vec3 difference) {
 
 /// origin + speed t with a single rounding, so that distant rays are not shifted: the rounding error of the
 /// product is added afterwards (Dekker 1971). Not by fma(), which a device may round twice.
-FN float move_origin(float origin, float speed, float t) {
+FN float move_origin(const float origin, const float speed, const float t) {
     EXACT float product = speed * t;
     EXACT float sum = origin + product;
     if (!(abs(t) < 1e34f)) return sum;
@@ -43,17 +43,18 @@ FN float move_origin(float origin, float speed, float t) {
     return result;
 }
 
-FN float greatest_size(Vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
+FN float greatest_size(const Vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
 /// Whether a ray that begins at `origin` is moved for an object within `reach` of `center`.
-FN bool is_far_away(Vec3 origin, Vec3 center, float reach) {
+FN bool is_far_away(const Vec3 origin, const Vec3 center, const float reach) {
     return greatest_size(subtract_exact(origin, center)) > kFarAway * reach;
 }
 
 /// `space_origin`: what places are measured from; `center`, `reach`: a sphere about the object, world space.
 /// All t of the ray within it are `shift` and something positive. The moved origin is off by its own
 /// rounding, not by that of the way there.
-FN LocalStart find_local_start(Vec3 origin, Vec3 direction, Vec3 space_origin, Vec3 center, float reach) {
+FN LocalStart find_local_start(const Vec3 origin, const Vec3 direction, const Vec3 space_origin,
+                               const Vec3 center, const float reach) {
     LocalStart start = {subtract_exact(origin, space_origin), 0.0f};
     if (!is_far_away(origin, center, reach)) return start;
     // Rounded alike by all kernels: they find the start of one ray again and again.
@@ -81,7 +82,9 @@ FN LocalStart find_local_start(Vec3 origin, Vec3 direction, Vec3 space_origin, V
 /// What the place of an object and that of a point on it add to how far rounding may move the point. Where
 /// rays are measured from the object they round once each, and so does the origin of a ray that starts there;
 /// else a few times more on the way back into the object's space.
-FN float share_of_place(Vec3 space_origin) { return greatest_size(space_origin) > 0.0f ? 0.125f : 1.0f; }
+FN float share_of_place(const Vec3 space_origin) {
+    return greatest_size(space_origin) > 0.0f ? 0.125f : 1.0f;
+}
 
 #include "formulas/end.h"
 #endif

@@ -12,7 +12,7 @@ struct MortonCode {
 };
 
 /// 1 / m for m in [1, 2), to 1e-7, by Newton's iteration: devices may round quotients differently.
-FN float invert_mantissa(float m) {
+FN float invert_mantissa(const float m) {
     EXACT float guess = 1.41176471f - 0.470588235f * m;
     EXACT float first = guess * (2.0f - m * guess);
     EXACT float second = first * (2.0f - m * first);
@@ -22,7 +22,7 @@ FN float invert_mantissa(float m) {
 
 /// Cell of `position` in [lower, upper] cut into 2^bits cells; 0 where the interval is empty or a value is
 /// NaN. Scaled by a quarter, so that no difference of floats overflows.
-FN uint quantise_position(float position, float lower, float upper, uint bits) {
+FN uint quantise_position(const float position, const float lower, const float upper, const uint bits) {
     EXACT float extent = upper * 0.25f - lower * 0.25f;
     EXACT float offset = position * 0.25f - lower * 0.25f;
     uint exponent = floatBitsToUint(extent) >> 23u; // its highest bit is the sign
@@ -42,17 +42,17 @@ FN uint spread_bits(uint x) {
     return (x | (x << 2u)) & 0x09249249u;
 }
 
-FN uint interleave_bits(uint x, uint y, uint z) {
+FN uint interleave_bits(const uint x, const uint y, const uint z) {
     return (spread_bits(x) << 2u) | (spread_bits(y) << 1u) | spread_bits(z);
 }
 
-FN Vec3 centre_of_box(Vec3 lower, Vec3 upper) {
+FN Vec3 centre_of_box(const Vec3 lower, const Vec3 upper) {
     EXACT Vec3 centre = lower * 0.5f + upper * 0.5f;
     return centre;
 }
 
 /// Code of a point in a box; `high` is 0.
-FN MortonCode make_morton30(Vec3 point, Vec3 lower, Vec3 upper) {
+FN MortonCode make_morton30(const Vec3 point, const Vec3 lower, const Vec3 upper) {
     uint x = quantise_position(point.x, lower.x, upper.x, kMortonBits30);
     uint y = quantise_position(point.y, lower.y, upper.y, kMortonBits30);
     uint z = quantise_position(point.z, lower.z, upper.z, kMortonBits30);
@@ -60,7 +60,7 @@ FN MortonCode make_morton30(Vec3 point, Vec3 lower, Vec3 upper) {
     return code;
 }
 
-FN MortonCode make_morton63(Vec3 point, Vec3 lower, Vec3 upper) {
+FN MortonCode make_morton63(const Vec3 point, const Vec3 lower, const Vec3 upper) {
     uint x = quantise_position(point.x, lower.x, upper.x, kMortonBits63);
     uint y = quantise_position(point.y, lower.y, upper.y, kMortonBits63);
     uint z = quantise_position(point.z, lower.z, upper.z, kMortonBits63);
@@ -72,7 +72,7 @@ FN MortonCode make_morton63(Vec3 point, Vec3 lower, Vec3 upper) {
     return code;
 }
 
-FN uint axis_of_morton_bit(uint bit) { return 2u - bit % 3u; }
+FN uint axis_of_morton_bit(const uint bit) { return 2u - bit % 3u; }
 
 #include "formulas/end.h"
 #endif

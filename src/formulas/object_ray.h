@@ -26,13 +26,15 @@ struct BoxInterval {
     float entry, exit;
 };
 
-FN float reciprocal_of_speed(float speed) { return 1.0f / (abs(speed) < kLeastSpeed ? kLeastSpeed : speed); }
-FN float margin_of_axis(float speed, float origin) {
+FN float reciprocal_of_speed(const float speed) {
+    return 1.0f / (abs(speed) < kLeastSpeed ? kLeastSpeed : speed);
+}
+FN float margin_of_axis(const float speed, const float origin) {
     return abs(speed) < kLeastSpeed ? 1e-6f * (abs(origin) + 1e-24f) : 0.0f;
 }
 
 /// The direction is not normalised, so t is the same in every space.
-FN ObjectRay make_object_ray(Vec3 origin, Vec3 direction) {
+FN ObjectRay make_object_ray(const Vec3 origin, const Vec3 direction) {
     ObjectRay ray;
     ray.origin = origin;
     ray.direction = direction;
@@ -62,7 +64,8 @@ FN ObjectRay make_object_ray(Vec3 origin, Vec3 direction) {
 }
 
 /// Within [t_min, t_max].
-FN BoxInterval cross_box(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, float t_max) {
+FN BoxInterval cross_box(const ObjectRay ray, const Vec3 lower, const Vec3 upper, const float t_min,
+                         const float t_max) {
     EXACT Vec3 to_lower = (lower - (ray.origin + ray.margin)) * ray.reciprocal;
     EXACT Vec3 to_upper = (upper - (ray.origin - ray.margin)) * ray.reciprocal;
     bool is_x_backward = ray.reciprocal.x < 0.0f;
@@ -80,13 +83,13 @@ FN BoxInterval cross_box(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, flo
     return result;
 }
 
-FN bool is_box_met(BoxInterval interval) {
+FN bool is_box_met(const BoxInterval interval) {
     EXACT float reach = interval.exit * kBoxSlack;
     return interval.entry <= reach;
 }
 
 /// A vertex relative to the ray: sheared x and y, z along the major axis (Woop et al. 2013).
-FN Vec3 shear_vertex(ObjectRay ray, Vec3 p) {
+FN Vec3 shear_vertex(const ObjectRay ray, const Vec3 p) {
     EXACT float z = select_axis(p, ray.axis_z) - select_axis(ray.origin, ray.axis_z);
     EXACT float x = (select_axis(p, ray.axis_x) - select_axis(ray.origin, ray.axis_x)) - ray.shear_x * z;
     EXACT float y = (select_axis(p, ray.axis_y) - select_axis(ray.origin, ray.axis_y)) - ray.shear_y * z;
@@ -101,7 +104,8 @@ struct TriangleHit {
 
 /// `a`, `b`, `c`: sheared corners. The sign of an edge function is never wrong, at most zero, and zero counts
 /// as inside. Fused operations would break this.
-FN TriangleHit intersect_sheared(ObjectRay ray, Vec3 a, Vec3 b, Vec3 c, float t_min, float t_max) {
+FN TriangleHit intersect_sheared(const ObjectRay ray, const Vec3 a, const Vec3 b, const Vec3 c,
+                                 const float t_min, const float t_max) {
     EXACT float u = c.x * b.y - c.y * b.x;
     EXACT float v = a.x * c.y - a.y * c.x;
     EXACT float w = b.x * a.y - b.y * a.x;

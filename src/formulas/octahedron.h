@@ -6,7 +6,7 @@
 #include "formulas/begin.h"
 
 /// Unit vector of coordinates in [-1, 1].
-FN Vec3 unfold_octahedron(Float x, Float y) {
+FN Vec3 unfold_octahedron(const Float x, const Float y) {
     EXACT Float z = Float(1.0f) - abs(x) - abs(y);
     Float overlap = max(-z, Float(0.0f));
     EXACT Float unfolded_x = x - copy_sign(overlap, x);

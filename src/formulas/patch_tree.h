@@ -20,33 +20,33 @@ const uint kTreeLevel = 6u;
 const uint kTreeReversed = 7u; ///< one bit per edge: its line runs against the patch's winding
 
 /// Number of nodes above `level`.
-FN uint count_nodes_above(uint level) { return ((1u << (2u * level)) - 1u) / 3u; }
+FN uint count_nodes_above(const uint level) { return ((1u << (2u * level)) - 1u) / 3u; }
 
-FN uint first_vertex_word(uint level) {
+FN uint first_vertex_word(const uint level) {
     return kTreeHeaderWords + kTreeNodeWords * count_nodes_above(level + 1u);
 }
 
-FN uint count_tree_units(uint level) {
+FN uint count_tree_units(const uint level) {
     uint side = (1u << level) + 1u;
     return (first_vertex_word(level) + 3u * side * side + kPoolUnitWords - 1u) / kPoolUnitWords;
 }
 
 /// Column of a Morton index of at most ten bits: every second bit from the lowest.
-FN uint morton_column(uint m) {
+FN uint morton_column(const uint m) {
     uint x = m & 0x155u;
     x = (x | (x >> 1u)) & 0x133u;
     x = (x | (x >> 2u)) & 0x10fu;
     return (x | (x >> 4u)) & 0x01fu;
 }
-FN uint morton_row(uint m) { return morton_column(m >> 1u); }
+FN uint morton_row(const uint m) { return morton_column(m >> 1u); }
 
 /// XOR masks that reverse the traversal of a level in column or row direction, for 2^bits columns and rows.
-FN uint make_order_mask(bool is_u_backward, bool is_v_backward) {
+FN uint make_order_mask(const bool is_u_backward, const bool is_v_backward) {
     return (is_u_backward ? 0x155u : 0u) | (is_v_backward ? 0x2aau : 0u);
 }
 
 // Requirements of all rays, ORed: bits 0..5 levels, then five bits an edge, one per level it is coarser.
-FN uint make_need(uint level, uint field_levels) {
+FN uint make_need(const uint level, const uint field_levels) {
     uint own = packed_patch_level(field_levels);
     uint need = 1u << level;
     for (uint edge = 0u; edge < 4u; ++edge) {
@@ -56,7 +56,7 @@ FN uint make_need(uint level, uint field_levels) {
     return need;
 }
 
-FN uint need_moves(uint need, uint edge) { return (need >> (5u + 5u * edge)) & 0x3eu; }
+FN uint need_moves(const uint need, const uint edge) { return (need >> (5u + 5u * edge)) & 0x3eu; }
 
 #include "formulas/end.h"
 #endif

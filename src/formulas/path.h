@@ -20,34 +20,39 @@ const uint kBsdfPair = 2u;
 const uint kRoulettePair = 3u; ///< (roulette, emitter)
 
 /// Dimension pair `kind` of the vertex after `depth` bounces.
-FN uint find_bounce_pair(uint depth, uint kind) { return kFirstBouncePair + depth * kPairsPerBounce + kind; }
+FN uint find_bounce_pair(const uint depth, const uint kind) {
+    return kFirstBouncePair + depth * kPairsPerBounce + kind;
+}
 
-FN Vec2 draw_bounce_pair(uint pixel_seed, uint sample_index, uint depth, uint kind) {
+FN Vec2 draw_bounce_pair(const uint pixel_seed, const uint sample_index, const uint depth, const uint kind) {
     return sobol_pair(pixel_seed, sample_index, find_bounce_pair(depth, kind));
 }
 
 /// In [0, 1): decides whether a ray passes the cut-out that it meets after `round` others. `is_shadow`: the
 /// shadow ray of the vertex after `depth` bounces, else the ray that comes there.
-FN float draw_cut_out(uint pixel_seed, uint sample_index, uint depth, uint is_shadow, uint round) {
+FN float draw_cut_out(const uint pixel_seed, const uint sample_index, const uint depth, const uint is_shadow,
+                      const uint round) {
     const uint first_pair = 65536u; // behind those of all bounces
     return sobol_pair(pixel_seed, sample_index, first_pair + (2u * depth + is_shadow) * 256u + round).x;
 }
 
 /// Ray through a point of the picture, in pixels.
-FN CameraRay aim_camera_ray(CameraFrame camera, Vec2 position, uint pixel_seed, uint sample_index) {
+FN CameraRay aim_camera_ray(const CameraFrame camera, const Vec2 position, const uint pixel_seed,
+                            const uint sample_index) {
     if (camera.aperture_radius > 0.0f)
         return make_camera_ray(camera, position, sobol_pair(pixel_seed, sample_index, kLensPair));
     return make_pinhole_ray(camera, position);
 }
 
 /// Ray through a random point of the pixel with the given top left corner.
-FN CameraRay start_camera_ray(CameraFrame camera, Vec2 corner, uint pixel_seed, uint sample_index) {
+FN CameraRay start_camera_ray(const CameraFrame camera, const Vec2 corner, const uint pixel_seed,
+                              const uint sample_index) {
     Vec2 position = corner + sobol_pair(pixel_seed, sample_index, kPixelPair);
     return aim_camera_ray(camera, position, pixel_seed, sample_index);
 }
 
 /// Clamps a base colour after multiplication by textures.
-FN Vec3 limit_color(Vec3 color) {
+FN Vec3 limit_color(const Vec3 color) {
     Vec3 zero = {0.0f, 0.0f, 0.0f};
     Vec3 one = {1.0f, 1.0f, 1.0f};
     return max(zero, min(color, one));
@@ -55,24 +60,24 @@ FN Vec3 limit_color(Vec3 color) {
 
 /// Light that arrives after so many bounces, none above `limit` in any component; 0: no limit. Biased: what
 /// is taken away is missing.
-FN Vec3 clamp_indirect(Vec3 light, float limit, uint bounces) {
+FN Vec3 clamp_indirect(const Vec3 light, const float limit, const uint bounces) {
     float brightest = max(max(light.x, light.y), light.z);
     return limit > 0.0f && bounces > 0u && brightest > limit ? light * (limit / brightest) : light;
 }
 
 /// Depth of the last rays of paths of so many bounces: behind the last vertex one more looks for light alone,
 /// so that there, too, lights found and lights drawn are weighed. Direct light alone is one shadow ray.
-FN uint find_last_depth(uint bounces) { return bounces > 0u ? bounces + 1u : 0u; }
+FN uint find_last_depth(const uint bounces) { return bounces > 0u ? bounces + 1u : 0u; }
 
 /// What clamp_indirect multiplies light by.
-FN float find_clamp_scale(Vec3 light, float limit, uint bounces) {
+FN float find_clamp_scale(const Vec3 light, const float limit, const uint bounces) {
     float brightest = max(max(light.x, light.y), light.z);
     return limit > 0.0f && bounces > 0u && brightest > limit ? limit / brightest : 1.0f;
 }
 
 /// Russian roulette (Arvo and Kirk 1990), from the second vertex on. Paths that carry kLeastThroughput or
 /// more all go on: ending them costs more in noise than it saves in rays (docs/results/noise.md).
-FN float survival_probability(uint depth, Vec3 throughput) {
+FN float survival_probability(const uint depth, const Vec3 throughput) {
     float brightest = max(max(throughput.x, throughput.y), throughput.z);
     return depth < kRouletteDepth ? 1.0f : min(brightest * (1.0f / kLeastThroughput), 1.0f);
 }

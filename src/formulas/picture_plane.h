@@ -6,7 +6,7 @@
 #include "formulas/begin.h"
 
 /// From the eye to the point `pixel` of the picture; `corner`, `step_x` and `step_y` as in CameraFrame.
-FN Vec3 find_picture_point(Vec3 corner, Vec3 step_x, Vec3 step_y, Vec2 pixel) {
+FN Vec3 find_picture_point(const Vec3 corner, const Vec3 step_x, const Vec3 step_y, const Vec2 pixel) {
     return corner + step_x * pixel.x + step_y * pixel.y;
 }
 

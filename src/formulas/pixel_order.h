@@ -13,7 +13,7 @@ struct PixelPlace {
 };
 
 /// Pixel `index` of a window: bands of rows, squares in a band, rows in a square, clipped at the border.
-FN PixelPlace place_pixel(uint index, uint width, uint height) {
+FN PixelPlace place_pixel(const uint index, const uint width, const uint height) {
     uint band = index / (kPixelSquare * width);
     uint in_band = index - band * kPixelSquare * width;
     uint rows = min_uint(kPixelSquare, height - band * kPixelSquare);
@@ -26,7 +26,7 @@ FN PixelPlace place_pixel(uint index, uint width, uint height) {
 }
 
 /// Inverse of place_pixel.
-FN uint find_pixel_number(uint x, uint y, uint width, uint height) {
+FN uint find_pixel_number(const uint x, const uint y, const uint width, const uint height) {
     uint band = y / kPixelSquare;
     uint square = x / kPixelSquare;
     uint rows = min_uint(kPixelSquare, height - band * kPixelSquare);

@@ -6,7 +6,7 @@
 #include "formulas/begin.h"
 
 /// 2^x for x in [-126, 126], beyond which it stays. Relative error 4e-7.
-FN Float find_power_of_two(Float x) {
+FN Float find_power_of_two(const Float x) {
     Float limited = clamp(x, Float(-126.0f), Float(126.0f));
     Float whole = floor(limited + Float(0.5f));
     Float f = (limited - whole) * Float(0.69314718056f);
@@ -17,7 +17,7 @@ FN Float find_power_of_two(Float x) {
 }
 
 /// Logarithm of a positive normal number to base 2. Error 2e-7 of 1, or of the result.
-FN Float find_logarithm(Float x) {
+FN Float find_logarithm(const Float x) {
     Uint bits = floatBitsToUint(x);
     Float exponent = Float(bits >> 23u) - Float(127.0f);
     Float m = uintBitsToFloat((bits & Uint(0x7fffffu)) | Uint(0x3f800000u));

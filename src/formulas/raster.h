@@ -20,13 +20,14 @@ struct CameraVectors {
     Vec3 corner, step_x, step_y;
 };
 
-FN Vec3 cross_magnitudes(Vec3 a, Vec3 b) {
+FN Vec3 cross_magnitudes(const Vec3 a, const Vec3 b) {
     Vec3 result = {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
     return result;
 }
 
 /// `bounds`: of `vectors`; `reach`: of the vectors to all points of the picture on the plane at distance 1.
-FN ObjectCamera make_object_camera(Vec3 origin, CameraVectors vectors, CameraVectors bounds, Vec3 reach) {
+FN ObjectCamera make_object_camera(const Vec3 origin, const CameraVectors vectors, const CameraVectors bounds,
+                                   const Vec3 reach) {
     Vec3 x = cross(vectors.step_y, vectors.corner);
     Vec3 y = cross(vectors.corner, vectors.step_x);
     Vec3 w = cross(vectors.step_x, vectors.step_y);
@@ -51,7 +52,7 @@ struct SeenPoint {
     Vec3 at, error;
 };
 
-FN SeenPoint see_point(ObjectCamera camera, Vec3 p) {
+FN SeenPoint see_point(const ObjectCamera camera, const Vec3 p) {
     Vec3 v = p - camera.origin;
     float size = max(abs(v.x), max(abs(v.y), abs(v.z)));
     Vec3 at = {dot(v, camera.x), dot(v, camera.y), dot(v, camera.w)};
@@ -59,10 +60,12 @@ FN SeenPoint see_point(ObjectCamera camera, Vec3 p) {
     return seen;
 }
 
-FN bool is_in_front(SeenPoint p) {
+FN bool is_in_front(const SeenPoint p) {
     return is_finite(p.at) && is_finite(p.error) && p.at.z > 2.0f * p.error.z;
 }
-FN bool is_behind(SeenPoint p) { return is_finite(p.at) && is_finite(p.error) && p.at.z < -2.0f * p.error.z; }
+FN bool is_behind(const SeenPoint p) {
+    return is_finite(p.at) && is_finite(p.error) && p.at.z < -2.0f * p.error.z;
+}
 
 /// Pixel coordinates, y downwards; empty where x0 > x1.
 struct ScreenBox {
@@ -81,16 +84,18 @@ FN ScreenBox make_empty_box() {
 }
 
 /// Interval quotient of value +- error by distance +- distance_error, the latter positive.
-FN float least_quotient(float value, float error, float distance, float distance_error) {
+FN float least_quotient(const float value, const float error, const float distance,
+                        const float distance_error) {
     float least = value - error;
     return least / (least < 0.0f ? distance - distance_error : distance + distance_error);
 }
-FN float greatest_quotient(float value, float error, float distance, float distance_error) {
+FN float greatest_quotient(const float value, const float error, const float distance,
+                           const float distance_error) {
     return -least_quotient(-value, error, distance, distance_error);
 }
 
 /// Extends the rectangle by a point in front of the camera.
-FN ScreenBox add_point(ScreenBox box, SeenPoint p) {
+FN ScreenBox add_point(const ScreenBox box, const SeenPoint p) {
     ScreenBox result = {min(box.x0, least_quotient(p.at.x, p.error.x, p.at.z, p.error.z)),
                         min(box.y0, least_quotient(p.at.y, p.error.y, p.at.z, p.error.z)),
                         max(box.x1, greatest_quotient(p.at.x, p.error.x, p.at.z, p.error.z)),
@@ -106,7 +111,7 @@ struct SeenCoordinate {
 
 /// A coordinate where the segment from a point in front to one behind crosses the camera plane, up to a
 /// positive factor: its sign tells on which side the segment leaves the picture. 0: unknown.
-FN float find_way_out(SeenCoordinate front, SeenCoordinate behind) {
+FN float find_way_out(const SeenCoordinate front, const SeenCoordinate behind) {
     float crossing = front.at * behind.distance + behind.at * front.distance;
     float error = front.error * behind.distance + behind.error * front.distance +
                   abs(front.at) * behind.distance_error + abs(behind.at) * front.distance_error +
@@ -115,7 +120,7 @@ FN float find_way_out(SeenCoordinate front, SeenCoordinate behind) {
 }
 
 /// Extends the rectangle by the visible part of a segment from before the camera to behind it.
-FN ScreenBox add_way_out(ScreenBox box, SeenPoint front, SeenPoint behind) {
+FN ScreenBox add_way_out(const ScreenBox box, const SeenPoint front, const SeenPoint behind) {
     float all = uintBitsToFloat(0x7f800000u);
     SeenCoordinate front_x = {front.at.x, front.error.x, front.at.z, front.error.z};
     SeenCoordinate front_y = {front.at.y, front.error.y, front.at.z, front.error.z};
@@ -129,7 +134,8 @@ FN ScreenBox add_way_out(ScreenBox box, SeenPoint front, SeenPoint behind) {
 }
 
 /// Rectangle of all triangles between four points.
-FN ScreenBox bound_on_screen(ObjectCamera camera, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+FN ScreenBox bound_on_screen(const ObjectCamera camera, const Vec3 a, const Vec3 b, const Vec3 c,
+                             const Vec3 d) {
     SeenPoint p[4] = {see_point(camera, a), see_point(camera, b), see_point(camera, c), see_point(camera, d)};
     ScreenBox box = make_empty_box();
     for (uint i = 0u; i < 4u; ++i) {

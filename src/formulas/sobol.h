@@ -23,7 +23,9 @@ FN uint hash_uint(uint x) {
     return x;
 }
 
-FN uint hash_combine(uint seed, uint value) { return hash_uint(seed ^ (hash_uint(value) + 0x9e3779b9u)); }
+FN uint hash_combine(const uint seed, const uint value) {
+    return hash_uint(seed ^ (hash_uint(value) + 0x9e3779b9u));
+}
 
 FN uint reverse_bits(uint x) {
     x = (x << 16u) | (x >> 16u);
@@ -36,7 +38,7 @@ FN uint reverse_bits(uint x) {
 
 /// Owen scrambling of a bit-reversed integer: each bit is flipped by a hash of the lower ones (Laine and
 /// Karras 2011, with the constants of Vegdahl 2021).
-FN uint scramble_reversed(uint x, uint seed) {
+FN uint scramble_reversed(uint x, const uint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16u) | 1u;
@@ -58,7 +60,7 @@ FN uint shift_polynomial(uint x) {
 
 /// Seed of one pixel for a render seed: a hash of its block of 8 x 8 pixels, and its place there along a
 /// Morton curve.
-FN uint make_pixel_seed(uint seed, uint x, uint y) {
+FN uint make_pixel_seed(const uint seed, const uint x, const uint y) {
     uint block = hash_combine(hash_combine(hash_uint(seed), x >> 3u), y >> 3u);
     uint place = (x & 1u) | ((y & 1u) << 1u) | ((x & 2u) << 1u) | ((y & 2u) << 2u) | ((x & 4u) << 2u) |
                  ((y & 4u) << 3u);
@@ -69,7 +71,7 @@ FN uint make_pixel_seed(uint seed, uint x, uint y) {
 /// of y in bits 6 to 11. The columns are those of generator matrices, found by search: the first 2^a points
 /// of 2^b pixels along the curve, a <= 4, a + b <= 6, together are (t, a + b, 2)-nets. t is 0 for 1 point of
 /// 2 x 2, 4 x 4 and 8 x 8 pixels and for 16 points of 2 x 2, elsewhere at most 1, 2 for 8 points of 2 x 2.
-FN uint shift_by_place(uint place) {
+FN uint shift_by_place(const uint place) {
     uint shifts = (0u - (place & 1u)) & 0x6ffu;
     shifts ^= (0u - ((place >> 1u) & 1u)) & 0xb6au;
     shifts ^= (0u - ((place >> 2u) & 1u)) & 0x3ceu;
@@ -80,7 +82,7 @@ FN uint shift_by_place(uint place) {
 }
 
 /// Owen shuffling of an index among those with the same highest bit: any first 2^a stay the first 2^a.
-FN uint shuffle_octave(uint index, uint seed) {
+FN uint shuffle_octave(const uint index, const uint seed) {
     uint below = index;
     below |= below >> 1u;
     below |= below >> 2u;
@@ -91,12 +93,12 @@ FN uint shuffle_octave(uint index, uint seed) {
     return highest | (reverse_bits(scramble_reversed(reverse_bits(index), seed)) & (below >> 1u));
 }
 
-FN uint swap_halves(uint x) { return (x << 16u) | (x >> 16u); }
+FN uint swap_halves(const uint x) { return (x << 16u) | (x >> 16u); }
 
 /// Point `index` of the scrambled sequence of a pair of dimensions, as 32-bit fractions. The pixels of a
 /// block share their scrambling and have points of their own by digital shifts: of the first six bits by
 /// their place, of those below by a hash.
-FN UintPair sobol_bits(uint pixel_seed, uint index, uint pair) {
+FN UintPair sobol_bits(const uint pixel_seed, const uint index, const uint pair) {
     uint seed_x = hash_combine(pixel_seed & 0xffffffc0u, pair);
     uint seed_y = hash_uint(seed_x ^ 0x68bc21ebu);
     uint own_seed = hash_combine(pixel_seed, pair ^ 0x80000000u);
@@ -112,10 +114,10 @@ FN UintPair sobol_bits(uint pixel_seed, uint index, uint pair) {
 }
 
 /// Float in [0, 1) from the upper 24 bits, the precision of a float.
-FN Float uint_to_unit(uint bits) { return Float(bits >> 8u) * Float(5.9604644775390625e-8f); }
+FN Float uint_to_unit(const uint bits) { return Float(bits >> 8u) * Float(5.9604644775390625e-8f); }
 
 /// Point in [0, 1)^2 of sample `index` in a pair of dimensions.
-FN Vec2 sobol_pair(uint pixel_seed, uint index, uint pair) {
+FN Vec2 sobol_pair(const uint pixel_seed, const uint index, const uint pair) {
     UintPair bits = sobol_bits(pixel_seed, index, pair);
     Vec2 result = {uint_to_unit(bits.x), uint_to_unit(bits.y)};
     return result;

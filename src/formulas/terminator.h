@@ -14,21 +14,21 @@ const float kLeastCornerCosine = 0.5f;
 
 /// Whether a triangle hides light that the smooth surface gets. Normals are unit vectors on the side that is
 /// lit; `smooth_normal`: interpolated, before normal maps.
-FN bool is_lost_light(Vec3 direction, Vec3 geometric_normal, Vec3 smooth_normal) {
+FN bool is_lost_light(const Vec3 direction, const Vec3 geometric_normal, const Vec3 smooth_normal) {
     return dot(direction, geometric_normal) <= 0.0f && dot(direction, smooth_normal) > 0.0f &&
            dot(geometric_normal, smooth_normal) < kFlatCosine;
 }
 
 /// Height above a point of a triangle, along its unit normal on the side that is lit, of the plane that
 /// touches the smooth surface at a corner.
-FN float find_tangent_height(Vec3 to_corner, Vec3 corner_normal, Vec3 geometric_normal) {
+FN float find_tangent_height(const Vec3 to_corner, const Vec3 corner_normal, const Vec3 geometric_normal) {
     float cosine = dot(corner_normal, geometric_normal);
     return abs(cosine) < kLeastCornerCosine ? 0.0f : dot(to_corner, corner_normal) / cosine;
 }
 
 /// Height of the smooth surface above a point of a triangle: half of what the planes at its corners say, as a
 /// parabola lies half way below its tangents; nothing where it lies below. `heights`: of find_tangent_height.
-FN float blend_tangent_heights(Vec3 heights, CornerWeights weights) {
+FN float blend_tangent_heights(const Vec3 heights, const CornerWeights weights) {
     return 0.5f * ((1.0f - weights.b - weights.c) * max(heights.x, 0.0f) + weights.b * max(heights.y, 0.0f) +
                    weights.c * max(heights.z, 0.0f));
 }

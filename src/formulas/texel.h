@@ -9,14 +9,14 @@ const uint kWrapMirror = 2u;
 const uint kWrapBlack = 3u;
 
 /// floor() without a library call where rounding instructions lack; non-finite values stay.
-FN float floor_texel(float x) {
+FN float floor_texel(const float x) {
     if (!(abs(x) < 8388608.0f)) return x;
     float whole = float(int(x));
     return whole > x ? whole - 1.0f : whole;
 }
 
 /// Column or row for `index` in a map of `size` texels; -1 outside with kWrapBlack.
-FN int wrap_texel(int index, int size, uint wrap) {
+FN int wrap_texel(const int index, const int size, const uint wrap) {
     if (index >= 0 && index < size) return index;
     if (wrap == kWrapClamp) return index < 0 ? 0 : size - 1;
     if (wrap == kWrapBlack) return -1;

@@ -3,19 +3,19 @@
 #define RELIEF_TONEMAP_H
 #include "formulas/begin.h"
 
-FN Float bend_filmic(Float x) {
+FN Float bend_filmic(const Float x) {
     return (x * (x + Float(0.0245786f)) - Float(0.000090537f)) /
            (x * (Float(0.983729f) * x + Float(0.4329510f)) + Float(0.238081f));
 }
 
 /// Input of the curve: exposed so that middle grey 0.18 stays 0.18, infinities clamped.
-FN Float expose_filmic(Float x) {
+FN Float expose_filmic(const Float x) {
     return min(select(x > Float(0.0f), x, Float(0.0f)), Float(1e6f)) * Float(1.461927f);
 }
 
 /// Filmic tone map of a linear Rec.709 colour into [0, 1], still linear: S. Hill's fit of the ACES transforms
 /// (BakingLab, 2015). Bright colours desaturate. Negative and NaN components count as 0.
-FN Vec3 tone_map_filmic(Vec3 c) {
+FN Vec3 tone_map_filmic(const Vec3 c) {
     Float r = expose_filmic(c.x);
     Float g = expose_filmic(c.y);
     Float b = expose_filmic(c.z);
@@ -33,13 +33,13 @@ FN Vec3 tone_map_filmic(Vec3 c) {
 }
 
 /// sRGB transfer function (IEC 61966-2-1) for x in [0, 1].
-FN Float encode_srgb(Float x) {
+FN Float encode_srgb(const Float x) {
     return select(x <= Float(0.0031308f), Float(12.92f) * x,
                   Float(1.055f) * pow(max(x, Float(0.0031308f)), Float(1.0f / 2.4f)) - Float(0.055f));
 }
 
 /// Its inverse.
-FN Float decode_srgb(Float x) {
+FN Float decode_srgb(const Float x) {
     return select(x <= Float(0.04045f), x * Float(1.0f / 12.92f),
                   pow((max(x, Float(0.04045f)) + Float(0.055f)) * Float(1.0f / 1.055f), Float(2.4f)));
 }

@@ -64,13 +64,13 @@ const uint kNodeAxisShift = 26u;
 const uint kNodeAxisMask = 0x0c000000u;
 const uint kEmptySlot = 0xf3ffffffu; ///< word of an empty heap slot; never visited
 
-FN bool is_leaf_word(uint word) { return (word & ~kNodeAxisMask) != 0u; }
-FN uint get_word_count(uint word) { return word & kNodeCountMask; }
-FN uint get_word_axis(uint word) { return (word & kNodeAxisMask) >> kNodeAxisShift; }
-FN uint make_inner_word(uint axis) { return axis << kNodeAxisShift; }
+FN bool is_leaf_word(const uint word) { return (word & ~kNodeAxisMask) != 0u; }
+FN uint get_word_count(const uint word) { return word & kNodeCountMask; }
+FN uint get_word_axis(const uint word) { return (word & kNodeAxisMask) >> kNodeAxisShift; }
+FN uint make_inner_word(const uint axis) { return axis << kNodeAxisShift; }
 
 /// Result of enter_box for a ray's interval.
-FN float cross_node(ObjectRay ray, TreeNode node, float t_min, float t_max) {
+FN float cross_node(const ObjectRay ray, const TreeNode node, const float t_min, const float t_max) {
     BoxInterval interval = cross_box(ray, node.lower, node.upper, t_min, t_max);
     return is_box_met(interval) ? interval.entry : make_infinity();
 }
@@ -102,7 +102,7 @@ const uint kHeapBrickBytes = 24u;
 const uint kBrickLevels = 6u;
 
 /// Bits set below bit `place` (0 to 63).
-FN uint rank_bits(uint low, uint high, uint place) {
+FN uint rank_bits(const uint low, const uint high, const uint place) {
     if (place < 32u) return uint(bitCount(low & ((1u << place) - 1u)));
     return uint(bitCount(low)) + uint(bitCount(high & ((1u << (place - 32u)) - 1u)));
 }
@@ -136,7 +136,8 @@ struct KdRay {
 /// 2 - kBoxSlack. A literal, because shader compilers fold constants in double precision.
 const float kCellSlack = 0.99999845f;
 
-FN KdRay make_kd_ray(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, float t_max) {
+FN KdRay make_kd_ray(const ObjectRay ray, const Vec3 lower, const Vec3 upper, const float t_min,
+                     const float t_max) {
     BoxInterval interval = cross_box(ray, lower, upper, t_min, t_max);
     // Never beyond the face: far from the origin, the float spacing exceeds the cell's margin.
     EXACT float offset = interval.entry * kCellSlack;
@@ -154,7 +155,7 @@ FN KdRay make_kd_ray(ObjectRay ray, Vec3 lower, Vec3 upper, float t_min, float t
 }
 
 /// Where the ray crosses the plane; only for a direction that is not zero along the axis.
-FN float cross_plane(KdRay ray, uint axis, float plane) {
+FN float cross_plane(const KdRay ray, const uint axis, const float plane) {
     EXACT float t = (plane - select_axis(ray.origin, axis)) / select_axis(ray.direction, axis);
     return t;
 }
@@ -168,7 +169,7 @@ struct KdStep {
 
 /// Descends from inner node `node`, inside of which the ray is from `near` to `far`. At near == plane the ray
 /// counts as beyond the plane: otherwise a traversal that restarts there would not advance.
-FN KdStep step_down(KdRay ray, uint node, KdNode data, float near, float far) {
+FN KdStep step_down(const KdRay ray, const uint node, const KdNode data, const float near, float far) {
     uint axis = data.word & 3u;
     float plane = uintBitsToFloat(data.bits);
     uint left = node + 1u;
@@ -190,7 +191,7 @@ FN KdStep step_down(KdRay ray, uint node, KdNode data, float near, float far) {
 }
 
 /// Exit distance from a cell, with the same operations as cross_plane of its planes.
-FN float leave_cell(KdRay ray, Vec3 lower, Vec3 upper, float far) {
+FN float leave_cell(const KdRay ray, const Vec3 lower, const Vec3 upper, float far) {
     if (ray.direction.x != 0.0f)
         far = min(far, cross_plane(ray, 0u, ray.direction.x > 0.0f ? upper.x : lower.x));
     if (ray.direction.y != 0.0f)
@@ -201,7 +202,7 @@ FN float leave_cell(KdRay ray, Vec3 lower, Vec3 upper, float far) {
 }
 
 /// Whether `near` lies beyond the nearest hit, with a margin for the rounding of both.
-FN bool is_kd_walk_over(KdRay ray, float near, float t_max) {
+FN bool is_kd_walk_over(const KdRay ray, const float near, const float t_max) {
     EXACT float reach = t_max * kBoxSlack;
     EXACT float place = near + ray.offset;
     return place > reach;

@@ -12,7 +12,7 @@ struct SinCos {
 };
 
 /// For angles in radians up to some thousands; error 1e-7.
-FN SinCos find_sin_cos(Float angle) {
+FN SinCos find_sin_cos(const Float angle) {
     Float quarters = floor(angle * Float(0.63661977236758134f) + Float(0.5f));
     // Cody-Waite reduction: pi / 2 in three parts, so that the first two products are exact.
     Float x = angle - quarters * Float(1.5703125f);
@@ -34,7 +34,7 @@ FN SinCos find_sin_cos(Float angle) {
 }
 
 /// Angle of the point (x, y) from the x axis, in [-pi, pi]; 0 for (0, 0). Error 4e-7.
-FN Float find_angle(Float y, Float x) {
+FN Float find_angle(const Float y, const Float x) {
     Float low = min(abs(x), abs(y));
     Float high = max(abs(x), abs(y));
     Float ratio = low / select(high > Float(0.0f), high, Float(1.0f));
@@ -50,7 +50,7 @@ FN Float find_angle(Float y, Float x) {
 }
 
 /// Arc cosine of a value in [-1, 1]. Error 4e-7.
-FN Float find_arc_cosine(Float cosine) {
+FN Float find_arc_cosine(const Float cosine) {
     Float magnitude = abs(cosine);
     Bool is_far = magnitude > Float(0.5f);
     Float half_square = Float(0.5f) * (Float(1.0f) - magnitude);

@@ -9,7 +9,7 @@
 #include "formulas/begin.h"
 
 /// Concentric map onto the unit disk (Shirley and Chiu 1997), branchless. Density 1 / pi.
-FN Vec2 square_to_disk(Vec2 u) {
+FN Vec2 square_to_disk(const Vec2 u) {
     Float x = Float(2.0f) * u.x - Float(1.0f);
     Float y = Float(2.0f) * u.y - Float(1.0f);
     Bool is_x_major = abs(x) > abs(y);
@@ -23,17 +23,19 @@ FN Vec2 square_to_disk(Vec2 u) {
 }
 
 /// Directions about +z with density cos / pi (Malley's method).
-FN Vec3 square_to_cosine_hemisphere(Vec2 u) {
+FN Vec3 square_to_cosine_hemisphere(const Vec2 u) {
     Vec2 d = square_to_disk(u);
     Vec3 result = {d.x, d.y, sqrt(max(Float(0.0f), Float(1.0f) - d.x * d.x - d.y * d.y))};
     return result;
 }
 
-FN Float cosine_hemisphere_pdf(Float cos_theta) { return max(cos_theta, Float(0.0f)) * Float(1.0f / kPi); }
+FN Float cosine_hemisphere_pdf(const Float cos_theta) {
+    return max(cos_theta, Float(0.0f)) * Float(1.0f / kPi);
+}
 
 /// Uniform directions in the cone about +z whose half angle has cosine 1 - height; height 2 is the whole
 /// sphere. Passing the height instead of the cosine keeps narrow cones exact.
-FN Vec3 square_to_cone(Vec2 u, Float height) {
+FN Vec3 square_to_cone(const Vec2 u, const Float height) {
     Float drop = u.x * height;
     Float sin_theta = sqrt(max(Float(0.0f), drop * (Float(2.0f) - drop)));
     SinCos at = find_sin_cos(Float(2.0f * kPi) * u.y);
@@ -41,14 +43,14 @@ FN Vec3 square_to_cone(Vec2 u, Float height) {
     return result;
 }
 
-FN Float cone_pdf(Float height) { return Float(1.0f) / (Float(2.0f * kPi) * height); }
+FN Float cone_pdf(const Float height) { return Float(1.0f) / (Float(2.0f * kPi) * height); }
 
-FN Vec3 square_to_sphere(Vec2 u) { return square_to_cone(u, Float(2.0f)); }
+FN Vec3 square_to_sphere(const Vec2 u) { return square_to_cone(u, Float(2.0f)); }
 
 FN Float sphere_pdf() { return Float(0.25f / kPi); }
 
 /// Uniform point of the triangle y <= x in the unit square (Heitz 2019). Density 2.
-FN Vec2 square_to_triangle(Vec2 u) {
+FN Vec2 square_to_triangle(const Vec2 u) {
     Bool is_y_major = u.y > u.x;
     Float half_x = Float(0.5f) * u.x;
     Float half_y = Float(0.5f) * u.y;

@@ -108,14 +108,6 @@ std::vector<uint32_t> keep_declared(const std::vector<uint32_t>& constants, std:
     return kept;
 }
 
-/// Of a kernel of the engine. Drivers of processors read some in half the time where all calls are inlined,
-/// and have no registers to lose by it.
-std::span<const uint32_t> find_code(const Device& device, const std::string& shader) {
-    const std::span<const uint32_t> inlined =
-        device.is_cpu() ? find_shader(shader + "_inlined") : std::span<const uint32_t>();
-    return inlined.empty() ? find_shader(shader) : inlined;
-}
-
 /// The device's cached pipeline, or an own one for external SPIR-V.
 std::shared_ptr<const vk::raii::Pipeline>
 find_pipeline(Device::Implementation& device, const KernelConfig& config, std::span<const uint32_t> code) {
@@ -134,8 +126,7 @@ Kernel::Kernel() noexcept = default;
 
 Kernel::Kernel(const Device& device, const KernelConfig& config)
     : implementation_(std::make_unique<Implementation>()) {
-    const std::span<const uint32_t> code =
-        config.code.empty() ? find_code(device, config.shader) : config.code;
+    const std::span<const uint32_t> code = config.code.empty() ? find_shader(config.shader) : config.code;
     check_config(device, config, code);
     implementation_->name = config.shader;
     implementation_->group_size = config.constants[0];
