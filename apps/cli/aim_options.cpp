@@ -181,7 +181,7 @@ void check_display(const DisplayArguments& display, const std::filesystem::path&
                                        "--exposure, --tonemap and --png-bits go with .png and .exr"});
     if (get_lower_extension(output) != ".exr" && !display.color_space.empty())
         throw Error(ErrorKind::usage,
-                    {"only .exr files tell their color space", output.string(), "-o FILE.exr"});
+                    {"only .exr files tell their colour space", output.string(), "-o FILE.exr"});
     if (!display.tone_map.empty()) check_tone_map(display.tone_map);
 }
 

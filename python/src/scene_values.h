@@ -15,7 +15,7 @@ nanobind::dict describe_camera(const Camera& camera);
 nanobind::dict describe_environment(const Environment& environment);
 /// Of suns.
 nanobind::list describe_suns(const std::vector<Light>& lights);
-/// Base color and roughness: of materials that the library made.
+/// Base colour and roughness: of materials that the library made.
 nanobind::dict describe_material(const Material& material);
 
 /// Keywords of Scene.aim, named after the command's options.

@@ -32,7 +32,7 @@ class TreeWorkshop {
     double copy_bandwidth() const { return copy_bandwidth_; }
 
     virtual TreeBuild build(TreeKind kind, int heap_levels) = 0;
-    /// The traversal is one of tree_traversals. Throws Error{failed} for one that is none of them.
+    /// The traversal is one of tree_traversals. Throws Error{usage} for one that is none of them.
     virtual TreeCast cast(const TreeQuery& query, const TreeCastData& data) = 0;
     /// Whether the tree, a heap, has a node of that key. Several threads may ask at once.
     virtual bool contains_key(uint64_t key) const = 0;

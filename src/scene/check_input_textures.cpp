@@ -70,8 +70,8 @@ void check_input_texture(const Material& material, const InputTexture& texture, 
     if (texture.input == MaterialInput::transmission_color && material.transmission_depth > 0 &&
         !material.is_thin_walled)
         refuse(where,
-               "a texture lies on the surface, and with transmission_depth this is the color of the inside",
-               "leave transmission_depth out, so that each crossing of the surface takes the color");
+               "a texture lies on the surface, and with transmission_depth this is the colour of the inside",
+               "leave transmission_depth out, so that each crossing of the surface takes the colour");
     visit_own_textures(material, [&](const char* name, const auto& own, MapFilter) {
         if (own && kind.own_texture && std::string_view(name) == kind.own_texture)
             refuse(where, fmt::format("has a texture twice: {} as well", name), "leave one of the two out");

@@ -77,7 +77,7 @@ colorspaces:
   - !<ColorSpace> {name: dark, to_scene_reference: !<MatrixTransform> {matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]}}
 )");
     write_color({0.25f, 0.25f, 0.25f});
-    EXPECT_HAS(message_of([&] { load("c.exr", "dark"); }), "no color space of that name: 'dark'");
+    EXPECT_HAS(message_of([&] { load("c.exr", "dark"); }), "no colour space of that name: 'dark'");
     setenv("OCIO", (folder_ / "config.ocio").c_str(), 1);
     expect_near(load("c.exr", "dark"), {0.5f, 0.5f, 0.5f}, 1e-4f);
     expect_near(load("c.exr", "acescg"), {0.25f, 0.25f, 0.25f}, 1e-4f);

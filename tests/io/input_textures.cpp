@@ -177,7 +177,7 @@ TEST_F(InputTextures, are_refused_by_name_where_they_cannot_be) {
                "ior that changes over its surface");
     EXPECT_HAS(refuse(R"("transmission_weight": 1, "transmission_depth": 1,
                          "transmission_color": {"file": "grey.exr"})"),
-               "color of the inside");
+               "colour of the inside");
     EXPECT_HAS(refuse(R"("coat_weight": {"file": "grey.exr"}, "coat_roughness": {"file": "grey.exr"},
                          "fuzz_weight": {"file": "grey.exr"}, "fuzz_roughness": {"file": "grey.exr"},
                          "roughness_texture": "grey.exr")"),

@@ -1,5 +1,5 @@
 // Walks a wide tree one child at a time, nearest first, as it is decoded: whether the tree holds what it was
-// made from. The engine's own kernels are checked by their hits. Same leaf contract as walks.h.
+// made from. The engine's own kernels are checked by their hits. Leaves as for lab/walks/walks.h.
 #pragma once
 
 #include <array>

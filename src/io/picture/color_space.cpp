@@ -89,7 +89,7 @@ void decode_texture(const std::string& space, Texture& texture) {
     if (!transform)
         throw Error(
             ErrorKind::bad_input,
-            {"no color space of that name: '" + space + "'", "",
+            {"no colour space of that name: '" + space + "'", "",
              suggest_word(space, kTextureSpaces) +
                  "; others come from the OpenColorIO configuration that the environment variable OCIO "
                  "names"});
@@ -101,7 +101,7 @@ void convert_picture(ColorWay way, Image& image) {
     if (entry == image.metadata.end() || entry->second == kLinear) return;
     if (!is_one_of(kPictureSpaces, entry->second))
         throw Error(ErrorKind::bad_input,
-                    {"no color space of pictures has that name: '" + entry->second + "'", "",
+                    {"no colour space of pictures has that name: '" + entry->second + "'", "",
                      suggest_word(entry->second, kPictureSpaces)});
     convert_pixels(*get_picture_library("color_space").make_color_space(entry->second, way), image);
 }

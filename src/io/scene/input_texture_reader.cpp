@@ -136,7 +136,7 @@ std::string read_color_space(const JsonNode& node) {
     const auto space = node.find("color_space");
     if (!space) return {};
     const std::string name = space->as_string();
-    if (name.empty()) space->fail("a color space needs a name", "auto, linear, srgb, acescg, ...");
+    if (name.empty()) space->fail("a colour space needs a name", "auto, linear, srgb, acescg, ...");
     return name == "auto" ? std::string() : name;
 }
 

@@ -147,7 +147,7 @@ class Walks {
         if constexpr (sizeof...(kOthers) > 0)
             return run<kOthers...>(view);
         else
-            throw Error(ErrorKind::failed,
+            throw Error(ErrorKind::usage,
                         {fmt::format("there is no walk {} of this tree", traversal_name(query_.traversal)),
                          "trees over a mesh", ""});
     }

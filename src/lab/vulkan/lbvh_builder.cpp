@@ -19,9 +19,8 @@ using Part = BuildReport::Part;
 
 constexpr uint32_t kLbvhGroupSize = 256;
 
-/// Mesa's CPU device (22.3) runs a group as fibres of as many lanes as its registers hold, four at least, and
-/// joins all of them at memory barriers. In a loop that some fibres leave early the rest is lost, unless
-/// there is only one.
+/// Mesa's CPU device (22.3) runs a group as fibres of four or eight lanes and joins all of them at memory
+/// barriers. In a loop that some fibres leave early the rest is lost, unless there is only one.
 uint32_t choose_refit_group_size(const Device& device) { return device.is_cpu() ? 4 : kLbvhGroupSize; }
 
 constexpr std::array<Stage, BuildReport::kPartCount> kStages = {

@@ -10,7 +10,7 @@ layout(scalar, push_constant) uniform Push { CutOutPush push; };
 
 #include "vulkan/shaders/met_lights.glsl"
 
-/// The same of a material whose inputs have textures: of opacity and metallic so far.
+/// Opacity and metallic of a material whose inputs have textures, from these numbers of its own.
 vec2 apply_wall_inputs(const HitData hit, const vec2 numbers_before, inout MaterialData material) {
     MaterialInputData inputs = material_inputs[material.inputs];
     inputs.numbers.word[kInputOpacity] = numbers_before.x;

@@ -16,8 +16,9 @@ struct EnvironmentDraw {
     vec2 position;
 };
 
-float load_cumulative(const uint first, const uint index) { return texelFetch(environment_table,
-                      int(first + index)).x; }
+float load_cumulative(const uint first, const uint index) {
+    return texelFetch(environment_table, int(first + index)).x;
+}
 
 /// First entry of the cells of a row.
 uint find_row(const EnvironmentData e, const uint row) { return e.cells_y + 1u + row * (e.cells_x + 1u); }

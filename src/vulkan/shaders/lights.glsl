@@ -70,8 +70,9 @@ LightPick pick_listed(const uint source_count, const LitPoint at, const float u,
     }
 }
 
-float load_emitter_probability(const uint emitter) { return uintBitsToFloat(texelFetch(emitter_table,
-                               int(emitter)).y); }
+float load_emitter_probability(const uint emitter) {
+    return uintBitsToFloat(texelFetch(emitter_table, int(emitter)).y);
+}
 
 /// A tree has chosen the emissive patch itself.
 float load_probability(const uint emitter) { return kHasLightTree != 0u ? 1.0 : load_emitter_probability(emitter); }

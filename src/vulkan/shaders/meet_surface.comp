@@ -22,7 +22,7 @@ float find_emitter_probability(const LitPoint at, const uint emitter) {
 }
 
 /// Density with which draw_light at the previous vertex would have sampled this point.
-float emitter_pdf(PathData path, const HitData hit, const SurfacePointData point) {
+float emitter_pdf(const PathData path, const HitData hit, const SurfacePointData point) {
     if (push.emitter_range_count == 0u) return 0.0;
     uint emitter =
         find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x + hit.patch_index;
@@ -32,7 +32,7 @@ float emitter_pdf(PathData path, const HitData hit, const SurfacePointData point
                            point.position - path.previous);
 }
 
-vec3 find_emission(PathData path, const HitData hit, const SurfacePointData point, const vec3 emission) {
+vec3 find_emission(const PathData path, const HitData hit, const SurfacePointData point, const vec3 emission) {
     if (emission == vec3(0.0)) return vec3(0.0);
     if (push.depth == 0u) return path.throughput * emission;
     vec3 light = path.throughput * emission * power_heuristic(path.bsdf_pdf, emitter_pdf(path, hit, point));

@@ -105,8 +105,9 @@ vec3 displace(const SurfaceData s, const VertexData base, const uint mip) {
     return add_exact(base.position, offset);
 }
 
-vec3 blend_vectors(const vec3 a, const vec3 b, const float s) { return vec3(blend(a.x, b.x, s), blend(a.y, b.y, s),
-                   blend(a.z, b.z, s)); }
+vec3 blend_vectors(const vec3 a, const vec3 b, const float s) {
+    return vec3(blend(a.x, b.x, s), blend(a.y, b.y, s), blend(a.z, b.z, s));
+}
 vec3 blend_quad_vectors(const vec3 a, const vec3 b, const vec3 c, const vec3 d, const float u, const float v) {
     return vec3(blend_quad(a.x, b.x, c.x, d.x, u, v), blend_quad(a.y, b.y, c.y, d.y, u, v),
                 blend_quad(a.z, b.z, c.z, d.z, u, v));

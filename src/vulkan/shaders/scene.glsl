@@ -47,8 +47,9 @@ vec3 load_position(const SurfaceData s, const uint vertex) { return load_positio
 
 vec2 load_uv(const SurfaceData s, const uint vertex) { return texelFetch(uvs, int(s.first_uv + vertex)).xy; }
 
-uvec4 load_quad(const SurfaceData s, const uint patch_index) { return texelFetch(quads,
-                int(s.first_quad + patch_index)); }
+uvec4 load_quad(const SurfaceData s, const uint patch_index) {
+    return texelFetch(quads, int(s.first_quad + patch_index));
+}
 
 bool is_triangle(const uvec4 quad) { return quad.w == quad.z; }
 

@@ -21,8 +21,10 @@ bool may_lift(const HitData hit) {
 }
 
 /// Corner of the triangle that was hit, 0 to 2, among those of its cell: 00 10 11 01.
-uint find_cell_corner(const HitData hit,
-                      const uint k) { return k + (cell_is_upper(hit.cell) != 0u && k > 0u ? 1u : 0u); }
+uint find_cell_corner(const HitData hit, const uint k) {
+    return k + (cell_is_upper(hit.cell) != 0u && k > 0u ? 1u : 0u);
+}
+
 uvec2 find_corner_sample(const HitData hit, const uint around) {
     return uvec2(cell_column(hit.cell) + (around == 1u || around == 2u ? 1u : 0u),
                  cell_row(hit.cell) + (around >= 2u ? 1u : 0u));

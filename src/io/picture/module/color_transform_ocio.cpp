@@ -79,7 +79,7 @@ std::unique_ptr<ColorTransform> make_ocio_color_space(const std::string& name, C
         return std::make_unique<OcioTransform>(config ? config : ocio::Config::CreateRaw(), all);
     } catch (const ocio::Exception& error) {
         throw Error(ErrorKind::bad_input,
-                    {"no colors can be taken from '" + name + "'", error.what(),
+                    {"no colours can be taken from '" + name + "'", error.what(),
                      "mend the configuration that the environment variable OCIO names"});
     }
 }
