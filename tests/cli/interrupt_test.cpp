@@ -3,6 +3,7 @@
 #include <csignal>
 #include <thread>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
@@ -49,10 +50,23 @@ TEST_F(Interrupt, after_the_first_pass_writes_a_picture_that_is_whole) {
         for (int x = 0; x < 64; ++x) ASSERT_GE(image.at(x, y, samples), 1);
 }
 
+/// `side` x `side` quads, each with the whole map.
+std::string make_grid(int side) {
+    std::string text = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+    for (int y = 0; y <= side; ++y)
+        for (int x = 0; x <= side; ++x) text += fmt::format("v {} {} 0\n", x, y);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0, first = 1 + y * (side + 1); x < side; ++x, ++first)
+            text +=
+                fmt::format("f {}/1 {}/2 {}/3 {}/4\n", first, first + 1, first + side + 2, first + side + 1);
+    return text;
+}
+
 /// A level that takes seconds to prepare: the signal comes long before the first ray.
 TEST_F(Interrupt, while_surfaces_are_prepared_ends_at_once) {
+    write("grid.obj", make_grid(6));
     const pid_t process =
-        start({"render", "plane.obj", "--subdivision", "catmark", "--subdivision-level", "8", "--vdm",
+        start({"render", "grid.obj", "--subdivision", "catmark", "--subdivision-level", "8", "--vdm",
                "bump.exr", "--preset", "cycles", "--size", "64x64", "--spp", "1048576", "-o", "no.png"});
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     kill(process, SIGTERM);
