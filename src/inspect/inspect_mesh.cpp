@@ -93,6 +93,11 @@ Fact describe_points(const MeshShape& shape) {
     return fact;
 }
 
+std::string describe_tangents(const Mesh& mesh) {
+    if (!mesh.tangents.empty()) return "in the file";
+    return mesh.uvs.empty() ? "none: no uvs" : "made from uvs";
+}
+
 void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result) {
     Box box;
     for (const Vec3f& position : mesh.positions) box.extend(position);
@@ -110,7 +115,7 @@ void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result
                          describe_bounds(box),
                          {"base", describe_base(mesh), {}},
                          {"normals", mesh.normal_indices.empty() ? "none" : "in the file", {}},
-                         {"tangents", mesh.tangents.empty() ? "made from uvs" : "in the file", {}}});
+                         {"tangents", describe_tangents(mesh), {}}});
 }
 
 void add_frame(const Mesh& mesh, const Displacement& map, Inspection& result) {

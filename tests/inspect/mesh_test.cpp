@@ -57,6 +57,7 @@ TEST(MeshInspection, missing_uvs_matter_more_with_a_map) {
     Mesh mesh = make_strip(2);
     mesh.uvs.clear(), mesh.uv_indices.clear();
     EXPECT_TRUE(has_code(inspect_mesh(mesh), "W-NOUV"));
+    EXPECT_EQ(get_fact(inspect_mesh(mesh), "tangents"), "none: no uvs");
     const Displacement map = make_map(make_sculpt_texture(8));
     EXPECT_TRUE(has_code(inspect_mesh(mesh, &map), "E-NOUV"));
 }
