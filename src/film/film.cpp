@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "film/error_of_mean.h"
 #include "film/layer_kinds.h"
 #include "image/cryptomatte.h"
 #include "image/shadow_alpha.h"
@@ -20,9 +21,7 @@ namespace relief {
 
 namespace {
 
-constexpr size_t kRadianceSums = 4;
-/// Radiance whose noise counts half: in the dark no relative error is ever small.
-constexpr double kDarkest = 0.01;
+constexpr size_t kRadianceSums = 4, kBatchSums = 6;
 
 void check_layer(const std::string& name) {
     const auto is_named = [&](const LayerKind& kind) {
@@ -89,13 +88,6 @@ void add_layer_sums(double* sums, LayerSource source, const FilmSums& added) {
     case LayerSource::materials:
         return;
     }
-}
-
-/// Variance of the mean of n samples from their sum and their sum of squares (unbiased); 0 for one sample.
-double variance_of_mean(double sum, double sum_of_squares, uint32_t n) {
-    if (n < 2) return 0;
-    const double mean = sum / n;
-    return std::max(0.0, sum_of_squares / n - mean * mean) / (n - 1);
 }
 
 bool is_direction(LayerSource source) {
@@ -165,6 +157,7 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
         if (kind.source == LayerSource::shadow) shadow_offset_ = stride_;
         add_layer({k, stride_, !is_requested, find_path_color(kind, light_layers_)});
     }
+    if (error == ErrorEstimate::on) batches_offset_ = stride_, stride_ += kBatchSums;
     allocate_sums();
 }
 
@@ -259,6 +252,7 @@ void Film::add(int x, int y, const FilmSums& added, float alpha) {
     if (needs_hit_ids()) add_mattes(index, added.hit_ids);
     for (const Layer& layer : layers_)
         add_layer_sums(sums + layer.sum_offset, kLayerKinds[layer.kind].source, added);
+    if (batches_offset_) close_batch(index);
 }
 
 void Film::add_lights(int x, int y, std::span<const Vec3f> lights) {
@@ -403,26 +397,6 @@ uint32_t Film::least_samples() const { return counts_.empty() ? 0 : *std::ranges
 
 uint32_t Film::most_samples() const {
     return counts_.empty() ? 0 : *std::max_element(counts_.begin(), counts_.end());
-}
-
-double Film::estimate_error(const Window& window) const {
-    DCHECK(squares_offset_);
-    double sum = 0;
-    for (int y = window.y0; y < window.y1; ++y)
-        for (int x = window.x0; x < window.x1; ++x) {
-            const size_t pixel = pixel_index(x, y);
-            const uint32_t n = counts_[pixel];
-            if (n < 2) return std::numeric_limits<double>::infinity();
-            const double* radiance = sums_.data() + pixel * stride_;
-            const double* squares = radiance + *squares_offset_;
-            double variance = 0, mean = 0;
-            for (size_t c = 0; c < 3; ++c) {
-                variance += variance_of_mean(radiance[c], squares[c], n) / 3;
-                mean += radiance[c] / n / 3;
-            }
-            sum += variance / ((mean + kDarkest) * (mean + kDarkest));
-        }
-    return std::sqrt(sum / (double(window.x1 - window.x0) * double(window.y1 - window.y0)));
 }
 
 size_t Film::byte_count() const {

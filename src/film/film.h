@@ -105,7 +105,7 @@ class Film {
 
     /// Adds all samples of a film of the same layers whose window lies in that of this one. Its samples
     /// follow the first `before` of each of its pixels; throws Error{bad_input} where this film has another
-    /// number.
+    /// number. With ErrorEstimate::on `before` has to be a multiple of 16.
     void join(const Film& part, uint32_t before);
 
     /// As if the pixels of `window` had never got a sample.
@@ -124,7 +124,9 @@ class Film {
     uint32_t sample_count(int x, int y) const { return counts_[pixel_index(x, y)]; }
 
     /// Root mean square over the pixels of a window of the standard error of their colour, relative to it.
-    /// With ErrorEstimate::on; infinity where a pixel has fewer than two samples.
+    /// With ErrorEstimate::on; infinity where a pixel has fewer than two samples. From 64 samples on the
+    /// error is that of means of 16 samples: samples of a sequence are closer to their mean than independent
+    /// ones.
     double estimate_error(const Window& window) const;
 
     PassState passes;
@@ -144,6 +146,8 @@ class Film {
     void add(int x, int y, const FilmSums& added, float alpha);
     void add_nearest(size_t pixel, float depth, uint32_t id);
     void add_mattes(size_t pixel, std::span<const uint32_t> hit_ids);
+    void close_batch(size_t pixel);
+    Vec3<double> estimate_variance(size_t pixel) const;
 
     int full_width_, full_height_;
     Window window_;
@@ -163,6 +167,7 @@ class Film {
     std::vector<Layer> layers_;            ///< requested or needed, in the order of that table
     std::optional<size_t> squares_offset_; ///< of the sums of the variance layer
     std::optional<size_t> shadow_offset_;  ///< of those of the shadow layer
+    std::optional<size_t> batches_offset_; ///< of radiance in full batches and the squares of their sums
     size_t stride_ = 0;
     std::vector<double> sums_;         ///< radiance, alpha, then the sums of the layers: stride_ a pixel
     std::vector<uint32_t> counts_;     ///< samples a pixel

@@ -16,7 +16,7 @@ namespace relief {
 
 namespace {
 
-constexpr std::string_view kStart = "relief film 2\n";
+constexpr std::string_view kStart = "relief film 3\n";
 
 [[noreturn]] void refuse(const std::string& message) {
     throw Error(ErrorKind::bad_input, {message, "sums of samples to go on from",
