@@ -30,14 +30,6 @@ bool is_end(int samples) {
     return samples >= kLongestPass ? samples % kLongestPass == 0 : (samples & (samples - 1)) == 0;
 }
 
-/// The noisiest quarter of a block decides for all of it.
-double estimate_block(const Film& film, const Window& block) {
-    double error = 0;
-    for (const Window& quarter : cut_into_windows(block, SamplePlan::kBlockEdge / 2))
-        error = std::max(error, film.estimate_error(quarter));
-    return kDeviations * error;
-}
-
 } // namespace
 
 SamplePlan::SamplePlan(Film& film, const ImageSettings& image)
@@ -75,7 +67,7 @@ void SamplePlan::choose_blocks() {
     std::vector<double> errors(blocks_.size());
     parallel_for("estimate_noise", blocks_.size(), 64, [&](size_t begin, size_t end) {
         for (size_t block = begin; block < end; ++block)
-            errors[block] = estimate_block(film_, blocks_[block]);
+            errors[block] = kDeviations * film_.estimate_error(blocks_[block]);
     });
     const size_t rows = blocks_.size() / columns_;
     for (size_t row = 0; row < rows; ++row)

@@ -9,7 +9,6 @@
 #include "base/check.h"
 #include "base/machine.h"
 #include "base/parallel.h"
-#include "film/error_of_mean.h"
 #include "film/layer_kinds.h"
 #include "image/cryptomatte.h"
 #include "image/shadow_alpha.h"
@@ -21,7 +20,9 @@ namespace relief {
 
 namespace {
 
-constexpr size_t kRadianceSums = 4, kBatchSums = 6;
+constexpr size_t kRadianceSums = 4;
+/// Radiance whose noise counts half: in the dark no relative error is ever small.
+constexpr double kDarkest = 0.01;
 
 void check_layer(const std::string& name) {
     const auto is_named = [&](const LayerKind& kind) {
@@ -157,8 +158,7 @@ Film::Film(int full_width, int full_height, const Window& window, const std::vec
         if (kind.source == LayerSource::shadow) shadow_offset_ = stride_;
         add_layer({k, stride_, !is_requested, find_path_color(kind, light_layers_)});
     }
-    if (error == ErrorEstimate::on) batches_offset_ = stride_, stride_ += kBatchSums;
-    allocate_sums();
+    allocate_sums(error);
 }
 
 void Film::add_layer(const Layer& layer) {
@@ -167,7 +167,7 @@ void Film::add_layer(const Layer& layer) {
 }
 
 /// Of all layers, which are there.
-void Film::allocate_sums() {
+void Film::allocate_sums(ErrorEstimate error) {
     bool needs_hit_counts = false, needs_nearest = false;
     size_t channels = kRadianceSums, matte_layers = 0;
     for (const Layer& layer : layers_) {
@@ -185,10 +185,12 @@ void Film::allocate_sums() {
     // Counts, hit counts, depths and ids are 4 bytes each, as are the channels of the resolved image.
     require_memory(double(pixels), stride_ * sizeof(double) + (4 + channels) * 4 +
                                        matte_layers * MatteCounts::kPixelBytes +
+                                       (error == ErrorEstimate::on ? sizeof(SampleBatches::Sums) : 0) +
                                        (has_motions ? kMotionBytes : 0));
     sums_.resize(pixels * stride_);
     counts_.resize(pixels);
     if (needs_hit_counts) hit_counts_.resize(pixels);
+    if (error == ErrorEstimate::on) batches_.emplace(pixels);
     if (needs_nearest) depths_.resize(pixels, std::numeric_limits<float>::infinity()), ids_.resize(pixels);
     for (const Layer& layer : layers_) {
         if (kLayerKinds[layer.kind].source == LayerSource::objects) objects_.emplace(pixels);
@@ -252,7 +254,7 @@ void Film::add(int x, int y, const FilmSums& added, float alpha) {
     if (needs_hit_ids()) add_mattes(index, added.hit_ids);
     for (const Layer& layer : layers_)
         add_layer_sums(sums + layer.sum_offset, kLayerKinds[layer.kind].source, added);
-    if (batches_offset_) close_batch(index);
+    if (batches_) batches_->add(index, added.radiance, counts_[index]);
 }
 
 void Film::add_lights(int x, int y, std::span<const Vec3f> lights) {
@@ -283,6 +285,7 @@ void Film::clear(const Window& window) {
         fill(depths_, first, 1, std::numeric_limits<float>::infinity());
         if (objects_) objects_->clear(first, width);
         if (materials_) materials_->clear(first, width);
+        if (batches_) batches_->clear(first, width);
     }
     passes = {};
 }
@@ -399,8 +402,36 @@ uint32_t Film::most_samples() const {
     return counts_.empty() ? 0 : *std::max_element(counts_.begin(), counts_.end());
 }
 
+/// Mean over the channels of that of the mean of the samples.
+double Film::estimate_variance(size_t pixel) const {
+    const double* radiance = sums_.data() + pixel * stride_;
+    const double* squares = radiance + *squares_offset_;
+    const uint32_t n = counts_[pixel];
+    if (const std::optional<double> of_batches = batches_->estimate_variance(pixel, radiance, n))
+        return *of_batches / 3;
+    double variance = 0;
+    for (size_t c = 0; c < 3; ++c) variance += variance_of_mean(radiance[c], squares[c], n) / 3;
+    return variance;
+}
+
+double Film::estimate_error(const Window& window) const {
+    DCHECK(squares_offset_ && batches_);
+    double sum = 0;
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
+            const size_t pixel = pixel_index(x, y);
+            const uint32_t n = counts_[pixel];
+            if (n < 2) return std::numeric_limits<double>::infinity();
+            const double* radiance = sums_.data() + pixel * stride_;
+            const double mean = (radiance[0] + radiance[1] + radiance[2]) / n / 3;
+            sum += estimate_variance(pixel) / ((mean + kDarkest) * (mean + kDarkest));
+        }
+    return std::sqrt(sum / (double(window.x1 - window.x0) * double(window.y1 - window.y0)));
+}
+
 size_t Film::byte_count() const {
     return sums_.size() * sizeof(double) +
+           (batches_ ? batches_->pixels().size() * sizeof(SampleBatches::Sums) : 0) +
            (counts_.size() + hit_counts_.size() + ids_.size()) * sizeof(uint32_t) +
            depths_.size() * sizeof(float) +
            counts_.size() * MatteCounts::kPixelBytes * size_t(objects_.has_value() + materials_.has_value());

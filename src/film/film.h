@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "film/matte_counts.h"
+#include "film/sample_batches.h"
 #include "image/light_layers.h"
 #include "relief/image.h"
 #include "relief/render.h"
@@ -105,7 +106,7 @@ class Film {
 
     /// Adds all samples of a film of the same layers whose window lies in that of this one. Its samples
     /// follow the first `before` of each of its pixels; throws Error{bad_input} where this film has another
-    /// number. With ErrorEstimate::on `before` has to be a multiple of 16.
+    /// number. With ErrorEstimate::on `before` has to be a multiple of 64.
     void join(const Film& part, uint32_t before);
 
     /// As if the pixels of `window` had never got a sample.
@@ -124,9 +125,8 @@ class Film {
     uint32_t sample_count(int x, int y) const { return counts_[pixel_index(x, y)]; }
 
     /// Root mean square over the pixels of a window of the standard error of their colour, relative to it.
-    /// With ErrorEstimate::on; infinity where a pixel has fewer than two samples. From 64 samples on the
-    /// error is that of means of 16 samples: samples of a sequence are closer to their mean than independent
-    /// ones.
+    /// With ErrorEstimate::on; infinity where a pixel has fewer than two samples. From 64 samples on it is
+    /// told from the means of batches.
     double estimate_error(const Window& window) const;
 
     PassState passes;
@@ -146,8 +146,7 @@ class Film {
     void add(int x, int y, const FilmSums& added, float alpha);
     void add_nearest(size_t pixel, float depth, uint32_t id);
     void add_mattes(size_t pixel, std::span<const uint32_t> hit_ids);
-    void close_batch(size_t pixel);
-    Vec3<double> estimate_variance(size_t pixel) const;
+    double estimate_variance(size_t pixel) const;
 
     int full_width_, full_height_;
     Window window_;
@@ -159,7 +158,7 @@ class Film {
     };
 
     void add_layer(const Layer& layer);
-    void allocate_sums();
+    void allocate_sums(ErrorEstimate error);
     std::vector<std::string> name_channels(const Layer& layer) const;
     void write_layer(size_t pixel, const Layer& layer, const PictureSpace& space, float* target) const;
 
@@ -167,7 +166,6 @@ class Film {
     std::vector<Layer> layers_;            ///< requested or needed, in the order of that table
     std::optional<size_t> squares_offset_; ///< of the sums of the variance layer
     std::optional<size_t> shadow_offset_;  ///< of those of the shadow layer
-    std::optional<size_t> batches_offset_; ///< of radiance in full batches and the squares of their sums
     size_t stride_ = 0;
     std::vector<double> sums_;         ///< radiance, alpha, then the sums of the layers: stride_ a pixel
     std::vector<uint32_t> counts_;     ///< samples a pixel
@@ -177,6 +175,7 @@ class Film {
     std::vector<Vec2f> motions_;
     std::shared_ptr<const InstanceMattes> mattes_;
     std::optional<MatteCounts> objects_, materials_; ///< where these layers are requested
+    std::optional<SampleBatches> batches_;           ///< with ErrorEstimate::on
 };
 
 } // namespace relief

@@ -90,6 +90,7 @@ void Film::write(std::ostream& stream, const std::string& identity) const {
     writer.add(sums_), writer.add(counts_), writer.add(hit_counts_), writer.add(depths_), writer.add(ids_);
     if (objects_) writer.add(objects_->slots());
     if (materials_) writer.add(materials_->slots());
+    if (batches_) writer.add(batches_->pixels());
     writer.add(std::vector<int32_t>{passes.target}), writer.add(passes.is_active);
     writer.finish();
 }
@@ -104,6 +105,7 @@ void Film::read(std::istream& stream, const std::string& identity) {
         reader.take(ids_);
     if (objects_) reader.take(objects_->slots());
     if (materials_) reader.take(materials_->slots());
+    if (batches_) reader.take(batches_->pixels());
     std::vector<int32_t> target(1);
     reader.take(target), reader.take(passes.is_active, counts_.size(), 0);
     passes.target = target[0];

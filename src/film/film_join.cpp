@@ -32,6 +32,7 @@ void Film::join(const Film& part, uint32_t before) {
                 add_nearest(pixel, part.depths_[other], part.ids_[other]);
             if (objects_) objects_->join(pixel, *part.objects_, other);
             if (materials_) materials_->join(pixel, *part.materials_, other);
+            if (batches_) batches_->join(pixel, *part.batches_, other);
         }
 }
 

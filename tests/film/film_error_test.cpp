@@ -34,7 +34,7 @@ TEST(FilmError, of_independent_samples_is_that_of_their_mean) {
     std::mt19937 random(7);
     Film film = make_film();
     int samples = 0;
-    for (const int more : {16, 32, 16, 6, 58, 128}) {
+    for (const int more : {16, 32, 16, 6, 58, 128, 100}) {
         add_independent(film, more, random);
         samples += more;
         // Over a mean of 1, and 0.01 for what is dark.
@@ -60,22 +60,31 @@ TEST(FilmError, sees_from_64_samples_on_that_batches_agree) {
     EXPECT_NEAR(film.estimate_error(pixel), std::sqrt(0.2 / 5) / 1.21, 1e-12);
 }
 
+TEST(FilmError, sees_from_256_samples_on_that_batches_of_64_agree) {
+    Film film = make_film();
+    const Window pixel{0, 0, 1, 1};
+    for (int k = 0; k < 255; ++k) add(film, 0, 0, k % 64 < 16 ? 3.0f : 1.0f);
+    EXPECT_GT(film.estimate_error(pixel), 0.05);
+    add(film, 0, 0, 1);
+    EXPECT_EQ(film.estimate_error(pixel), 0.0);
+}
+
 TEST(FilmError, is_the_same_of_sums_of_batches_and_of_joined_films) {
     const Window pixel{0, 0, 1, 1};
     Film whole = make_film(), summed = make_film(), first = make_film(), second = make_film();
-    for (uint32_t batch = 0; batch < 8; ++batch) {
+    for (uint32_t batch = 0; batch < 21; ++batch) {
         FilmSums sums;
         for (uint32_t k = 0; k < 16; ++k) {
             const float radiance = float((batch * batch + k * 3) % 7);
             add(whole, 0, 0, radiance);
-            add(batch < 5 ? first : second, 0, 0, radiance);
+            add(batch < 4 ? first : second, 0, 0, radiance);
             const double square = double(radiance) * radiance;
             ++sums.count, sums.radiance += Vec3f{radiance, radiance, radiance};
             sums.squares += Vec3<double>{square, square, square};
         }
         summed.add_sums(0, 0, sums);
     }
-    first.join(second, 80);
+    first.join(second, 64);
     EXPECT_GT(whole.estimate_error(pixel), 0.0);
     EXPECT_EQ(summed.estimate_error(pixel), whole.estimate_error(pixel));
     EXPECT_EQ(first.estimate_error(pixel), whole.estimate_error(pixel));
