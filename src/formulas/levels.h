@@ -18,6 +18,19 @@ FN uint lower_packed_levels(const uint packed, const uint lod_bias) {
     return result;
 }
 
+/// 5 x 3 bits, of levels up to kMaxNarrowLevel, and back.
+const uint kMaxNarrowLevel = 7u;
+FN uint narrow_levels(const uint packed) {
+    uint result = 0u;
+    for (uint k = 0u; k < 5u; ++k) result |= ((packed >> (4u * k)) & 7u) << (3u * k);
+    return result;
+}
+FN uint widen_levels(const uint narrow) {
+    uint result = 0u;
+    for (uint k = 0u; k < 5u; ++k) result |= ((narrow >> (3u * k)) & 7u) << (4u * k);
+    return result;
+}
+
 /// The same level for a patch and its edges.
 FN uint pack_uniform_level(const uint level) { return level * 0x11111u; }
 

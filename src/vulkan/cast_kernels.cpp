@@ -2,6 +2,7 @@
 #include "formulas/patch_tree.h"
 #include "vulkan/layout/bindings.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <utility>
@@ -30,9 +31,23 @@ std::array<BuildShape, scalar::kBuildBinCount> choose_shapes(bool is_cpu) {
     return {{{64, 8}, {64, 64}, {128, 128}}};
 }
 
-/// Granularity of stack sizes, so that scenes of similar depth share a kernel: from 320 bytes on, as RADV
-/// keeps arrays of up to 256 in registers. Size 1 means no stack.
-constexpr uint32_t kStackStep = 40;
+/// Granularity of stack sizes, so that scenes of similar depth share a kernel: from 288 and 320 bytes on, as
+/// RADV keeps arrays of up to 256 in registers.
+constexpr uint32_t kStackStep = 24, kTileStackStep = 40;
+
+uint32_t round_up(uint32_t size, uint32_t step) { return (size + step - 1) / step * step; }
+
+/// Of a kernel that walks the scene trees. Stacks of one entry are none.
+std::vector<uint32_t> make_walk_constants(const DeviceScene& scene, uint32_t tile_stack_size,
+                                          const RenderSettings& settings) {
+    const uint32_t stack_size = scene.stack_size() > 1 ? round_up(scene.stack_size(), kStackStep) : 1;
+    std::vector<uint32_t> constants = scene.add_contents({kGroup, stack_size}, settings.surface.lod);
+    if (tile_stack_size > 0) {
+        constants.resize(std::max<size_t>(constants.size(), scalar::kTileStackConstant + 1));
+        constants[scalar::kTileStackConstant] = round_up(tile_stack_size, kTileStackStep);
+    }
+    return constants;
+}
 
 /// Maximum tree level of each bin.
 constexpr std::array<uint32_t, scalar::kBuildBinCount> kDeepest = {1, 3, scalar::kTreeLevels};
@@ -55,18 +70,16 @@ Kernel make_walk(const Device& device, RenderMethod method, const TraversalKerne
 } // namespace
 
 CastKernels::CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
-                         const TracerConfig& config, uint32_t stack_size) {
+                         const TracerConfig& config, uint32_t tile_stack_size) {
     const bool is_cpu = device.is_cpu();
     const uint32_t is_box = settings.surface.leaf == LeafKind::box;
     // Measured: docs/decisions/bottom-form.md.
     is_fused = settings.experiment.bottom == BottomForm::fused;
-    if (stack_size > 1) stack_size = (stack_size + kStackStep - 1) / kStackStep * kStackStep;
-    scene_traversal = make_walk(device, settings.experiment.method, scene.traversal_kernel(),
-                                scene.add_contents({kGroup, stack_size}, settings.surface.lod));
+    std::vector<uint32_t> constants = make_walk_constants(scene, tile_stack_size, settings);
+    scene_traversal = make_walk(device, settings.experiment.method, scene.traversal_kernel(), constants);
     if (config.collected > 0)
-        collecting_traversal =
-            make_walk(device, settings.experiment.method, scene.traversal_kernel(),
-                      scene.add_collecting(scene.add_contents({kGroup, stack_size}, settings.surface.lod)));
+        collecting_traversal = make_walk(device, settings.experiment.method, scene.traversal_kernel(),
+                                         DeviceScene::add_collecting(std::move(constants)));
     find_jobs = Kernel(device, {"find_jobs", scene.add_contents({kGroup}, settings.surface.lod)});
     prepare_arguments = Kernel(device, {"prepare_arguments", {1}});
     bottom_cache = Kernel(device, {"bottom_cache", {kGroup}});

@@ -13,9 +13,9 @@
 namespace relief::vulkan {
 
 struct CastKernels {
-    /// `stack_size`: entries needed for scene trees and tile directories.
+    /// `tile_stack_size`: entries needed for the tiles of a patch; 0: there are none.
     CastKernels(const Device& device, const DeviceScene& scene, const RenderSettings& settings,
-                const TracerConfig& config, uint32_t stack_size);
+                const TracerConfig& config, uint32_t tile_stack_size);
 
     /// The fused form leaves excess pairs of large trees to `leftover` on devices that limit loops.
     bool is_fused, has_leftover = false;

@@ -1,10 +1,12 @@
 #include "vulkan/device_scene.h"
 
 #include <algorithm>
+#include <cstring>
 #include <set>
+#include <span>
 #include <utility>
 
-#include "bvh/tree_links.h"
+#include "bvh/wide_bvh.h"
 #include "formulas/levels.h"
 #include "formulas/mips.h"
 #include "formulas/patch_tree.h"
@@ -38,7 +40,17 @@ void set_constant(std::vector<uint32_t>& constants, uint32_t number, uint32_t va
     constants[number] = value;
 }
 
-uint32_t pack_kind(uint32_t kind, uint32_t count) { return kind << scalar::kNodeKindShift | count; }
+static_assert(sizeof(WideNode) == scalar::kWideNodeUnits * sizeof(NodeTexels));
+static_assert(WideNode::kLeafFlag == scalar::kLeafFlag && WideNode::kMaxLeafFirst == scalar::kLeafFirstMask);
+
+/// Nodes on the longest way down; children lie behind their parents.
+uint32_t compute_depth(const WideBvh& tree) {
+    std::vector<uint32_t> depths(tree.nodes.size(), 1);
+    for (size_t k = 0; k < tree.nodes.size(); ++k)
+        for (const uint32_t child : std::span(tree.nodes[k].child, tree.nodes[k].child_count))
+            if (!WideNode::is_leaf(child)) depths[child] = depths[k] + 1;
+    return depths.empty() ? 0 : *std::ranges::max_element(depths);
+}
 
 } // namespace
 
@@ -47,26 +59,64 @@ struct DeviceScene::Arrays {
     std::vector<Vec3f> positions;
     std::vector<Vec2f> uvs;
     std::vector<PackedFrame> frames;
-    std::vector<Quad> quads;
+    std::vector<std::array<uint32_t, 4>> quads, overrides;
     std::vector<uint32_t> dominants, levels, primitive_ids, override_bits;
     std::vector<uint8_t> vertex_tiles;
-    std::vector<std::array<uint32_t, 4>> overrides;
     std::vector<NodeTexels> nodes;
     std::vector<Box> surface_boxes;
     std::vector<uint32_t> surface_roots;
-    int deepest_surface = 0;
 
-    /// Appends a tree; `make_leaf` turns a leaf of the binary tree into (first, kind and count).
-    template <class MakeLeaf> uint32_t append_tree(const Bvh& bvh, MakeLeaf make_leaf) {
-        if (bvh.nodes.empty()) return kNone;
+    void add_quads(const Surface& surface, scalar::SurfaceData& data) {
+        data.first_quad_texel = uint32_t(quads.size());
+        data.has_wide_quads = surface.vertex_count() > 0x10000 ? 1 : 0;
+        uint32_t patch = 0;
+        for (const Quad quad : surface.quads) {
+            const auto& v = quad.vertex;
+            const std::array<uint32_t, 2> narrow{v[0] | v[1] << 16, v[2] | v[3] << 16};
+            if (data.has_wide_quads)
+                quads.push_back(v);
+            else if (patch++ % 2 == 0)
+                quads.push_back({narrow[0], narrow[1], 0, 0});
+            else
+                quads.back()[2] = narrow[0], quads.back()[3] = narrow[1];
+        }
+    }
+
+    /// Appends a tree, whose leaves count from `first_leaf` on; returns its root.
+    uint32_t append_tree(const WideBvh& tree, uint32_t first_leaf) {
+        if (tree.nodes.empty()) return kNone;
         const uint32_t root = uint32_t(nodes.size());
-        for (const BvhNode& node : bvh.nodes) {
-            const auto [first, kind] = node.is_leaf()
-                                           ? make_leaf(node)
-                                           : std::pair(root + node.first, pack_kind(scalar::kNodeInner, 0));
-            nodes.push_back({node.lower, first, node.upper, kind});
+        nodes.resize(nodes.size() + tree.nodes.size() * scalar::kWideNodeUnits);
+        for (size_t k = 0; k < tree.nodes.size(); ++k) {
+            WideNode node = tree.nodes[k];
+            for (uint32_t& child : std::span(node.child, node.child_count))
+                child = WideNode::is_leaf(child) ? child + first_leaf : root + child * scalar::kWideNodeUnits;
+            std::memcpy(&nodes[root + k * scalar::kWideNodeUnits], &node, sizeof node);
         }
         return root;
+    }
+
+    /// InstanceData::levels of a field that is not uniform.
+    uint32_t append_levels(const LevelField& field, uint32_t patch_count) {
+        const uint32_t first = uint32_t(levels.size()) | scalar::kManyLevels;
+        const bool is_narrow = uint32_t(field.max_level()) <= scalar::kMaxNarrowLevel;
+        for (uint32_t patch = 0; patch < patch_count; ++patch) {
+            const uint32_t packed = field.packed_at(patch);
+            if (!is_narrow)
+                levels.push_back(packed);
+            else if (patch % 2 == 0)
+                levels.push_back(scalar::narrow_levels(packed));
+            else
+                levels.back() |= scalar::narrow_levels(packed) << 16;
+        }
+        return is_narrow ? first | scalar::kNarrowLevels : first;
+    }
+
+    /// Entries of primitive_ids for a tree of polygons; returns the first.
+    uint32_t append_ids(const WideBvh& tree, uint32_t count) {
+        const uint32_t first = uint32_t(primitive_ids.size());
+        for (uint32_t k = 0; k < count; ++k) primitive_ids.push_back(tree.primitive_at(k));
+        return first;
     }
 };
 
@@ -210,7 +260,8 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
     for (const Surface& surface : scene.surfaces) {
         scalar::SurfaceData data{};
         data.first_vertex = uint32_t(arrays.positions.size());
-        for (uint32_t v = 0; v < surface.vertex_count(); ++v) arrays.positions.push_back(surface.position(v));
+        data.dominant_count =
+            append(arrays.positions, surface.positions) == kNone ? 0 : uint32_t(surface.positions.size());
         has_bicubic_ |= !surface.controls.empty();
         data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
         for (const InnerControls& controls : surface.controls)
@@ -221,11 +272,12 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         data.first_uv = append(arrays.uvs, surface.uvs);
         data.first_frame = append(arrays.frames, surface.frames);
         data.first_dominant = surface.copies.empty() ? kNone : uint32_t(arrays.dominants.size());
-        for (uint32_t v = 0; v < surface.vertex_count() && !surface.copies.empty(); ++v)
+        for (uint32_t v = data.dominant_count; v < surface.vertex_count(); ++v)
             arrays.dominants.push_back(surface.dominant(v));
         data.first_vertex_tile = append(arrays.vertex_tiles, surface.vertex_tiles);
-        data.first_quad = uint32_t(arrays.quads.size());
-        for (const Quad quad : surface.quads) arrays.quads.push_back(quad);
+        data.first_quad = patch_count_;
+        arrays.add_quads(surface, data);
+        patch_count_ += uint32_t(surface.quads.size());
         data.first_override = uint32_t(arrays.overrides.size());
         data.override_count = uint32_t(surface.overrides.size());
         for (const EdgeOverride& o : surface.overrides.list())
@@ -246,29 +298,22 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         has_polygons_ |= !surface.has_displacement;
         tables_.surfaces.push_back(data);
     }
-    patch_count_ = uint32_t(arrays.quads.size());
 }
 
 void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
+    uint32_t deepest_surface = 0;
     for (const Surface& surface : scene.surfaces) {
         const Bvh bvh = build_surface_bvh(surface, compute_patch_boxes(surface));
-        arrays.deepest_surface = std::max(arrays.deepest_surface, compute_depth(bvh));
-        const uint32_t first_id = uint32_t(arrays.primitive_ids.size());
-        if (!surface.has_displacement) append(arrays.primitive_ids, bvh.primitive_ids);
-        arrays.surface_roots.push_back(arrays.append_tree(bvh, [&](const BvhNode& node) {
-            return surface.has_displacement
-                       ? std::pair(bvh.primitive_ids[node.first], pack_kind(scalar::kNodePatch, 1))
-                       : std::pair(first_id + node.first,
-                                   pack_kind(scalar::kNodePolygons, node.primitive_count));
-        }));
+        const WideBvh tree = make_wide_bvh(bvh);
+        deepest_surface = std::max(deepest_surface, compute_depth(tree));
+        const uint32_t first_leaf =
+            surface.has_displacement ? 0 : arrays.append_ids(tree, uint32_t(surface.patch_count()));
+        arrays.surface_roots.push_back(arrays.append_tree(tree, first_leaf));
         arrays.surface_boxes.push_back(bvh.nodes.empty() ? Box{} : bvh.nodes[0].box());
     }
-    const Bvh instances = build_instance_bvh(scene, arrays.surface_boxes);
-    root_ = arrays.append_tree(instances, [&](const BvhNode& node) {
-        return std::pair(instances.primitive_ids[node.first], pack_kind(scalar::kNodeInstance, 1));
-    });
-    // Front-to-back traversal pushes one sibling per level.
-    stack_size_ = uint32_t(compute_depth(instances) + arrays.deepest_surface + 4);
+    const WideBvh instances = make_wide_bvh(build_instance_bvh(scene, arrays.surface_boxes));
+    root_ = arrays.append_tree(instances, 0);
+    stack_size_ = compute_depth(instances) + deepest_surface;
     node_count_ = arrays.nodes.size();
 }
 
@@ -278,7 +323,7 @@ void DeviceScene::add_walk(const SceneWalk& walk, Arrays& arrays) {
     for (const uint8_t has_patches : walk.has_patches)
         arrays.surface_roots.push_back(has_patches ? 0 : kNone);
     root_ = walk.has_instances ? 0 : kNone;
-    stack_size_ = 1; // these traversals need no stack; tile directories add theirs
+    stack_size_ = 1; // these traversals have stacks of their own
     node_count_ = arrays.nodes.size();
 }
 
@@ -328,9 +373,7 @@ void DeviceScene::add_instances(const PreparedScene& scene, Arrays& arrays) {
         if (instance.levels->is_uniform()) {
             data.levels = surface.patch_count() > 0 ? instance.levels->packed_at(0) : 0;
         } else {
-            data.levels = uint32_t(arrays.levels.size()) | scalar::kManyLevels;
-            for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
-                arrays.levels.push_back(instance.levels->packed_at(patch));
+            data.levels = arrays.append_levels(*instance.levels, uint32_t(surface.patch_count()));
         }
         if (instance.is_mirrored) data.levels |= scalar::kMirrored;
         if (instance.is_shadow_catcher) data.levels |= scalar::kShadowCatcher;

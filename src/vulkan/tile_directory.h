@@ -29,7 +29,7 @@ class TileDirectories {
     uint32_t directory_mask() const { return uint32_t(table_.size()) - 1; }
     /// Whether any patch may have tiles.
     bool is_needed() const { return finest_level_ > int(scalar::kTreeLevels); }
-    /// Stack entries that a ray needs beyond those of the scene trees.
+    /// Stack entries that a ray needs for the tiles of a patch.
     uint32_t stack_size() const {
         return is_needed() ? 2 * (uint32_t(finest_level_) - scalar::kTreeLevels) + 2 : 0;
     }

@@ -67,7 +67,7 @@ struct Tracer::Implementation {
           cache(make_cache(d, ds, settings, c)),
           sort(d),
           buffers(d, config, sort.histogram_words(config.pair_capacity)),
-          kernels(d, ds, settings, config, ds.stack_size() + directories.stack_size()) {
+          kernels(d, ds, settings, config, directories.stack_size()) {
         device_scene.bind(bindings);
         directories.bind(bindings);
         cache.bind(bindings);

@@ -49,7 +49,7 @@ const uint kBindNodes = 32u;        ///< rgba32ui: two per node
 const uint kBindPositions = 33u;    ///< r32f: three per vertex
 const uint kBindUvs = 34u;          ///< rg32f
 const uint kBindFrames = 35u;       ///< rg32ui: PackedFrame
-const uint kBindQuads = 36u;        ///< rgba32ui
+const uint kBindQuads = 36u;        ///< rgba32ui: one, or two of 16 bits a vertex
 const uint kBindDominants = 37u;    ///< r32ui
 const uint kBindVertexTiles = 38u;  ///< r32ui: four per word
 const uint kBindOverrides = 39u;    ///< rgba32ui: patch edge, first, second, 0
@@ -126,6 +126,9 @@ const uint kRayLodConstant = 26u;
 const uint kCollectsConstant = 27u;
 // Of kernels that know of materials: not 0 where a texture of one lies on another uv set than its mesh's own.
 const uint kUvSetsConstant = 28u;
+// Of kernels that walk the scene trees: nodes that the walk through the tiles of a patch has on its stack at
+// most.
+const uint kTileStackConstant = 29u;
 
 #include "formulas/end.h"
 #endif

@@ -18,6 +18,7 @@ struct AffineData {
 const uint kManyLevels = 0x80000000u;
 const uint kMirrored = 0x40000000u;      ///< winding reversed
 const uint kShadowCatcher = 0x20000000u; ///< see Object::is_shadow_catcher
+const uint kNarrowLevels = 0x10000000u;  ///< of many: two patches a word (narrow_levels)
 
 struct InstanceData {
     AffineData object_from_origin, world_from_object;
@@ -32,10 +33,13 @@ struct InstanceData {
 
 /// First entries in the texel buffers; kNone where the surface has no such data.
 struct SurfaceData {
-    uint first_vertex; ///< of positions, in vertices
+    uint first_vertex;   ///< of positions, one a dominant vertex
+    uint dominant_count; ///< vertices from here on have their position at a dominant one
     uint first_uv, first_frame, first_dominant;
     uint first_vertex_tile; ///< in bytes: four per word
-    uint first_quad;        ///< also the tree index of the surface's first patch
+    uint first_quad;        ///< the tree index of the surface's first patch
+    uint first_quad_texel;  ///< of quads
+    uint has_wide_quads;    ///< one a texel, not two: there are more vertices than 16 bits count
     uint first_override, override_count;
     uint first_override_word; ///< of override_bits
     uint map;                 ///< index into maps; kNone: not displaced
@@ -134,12 +138,19 @@ struct WalkTreeData {
 };
 const uint kWalkTreeWords = 14u;
 
-// Nodes of scene trees take two texels: (lower x y z, first), (upper x y z, kind_and_count), as bits.
-const uint kNodeInner = 0u;    ///< first: node of the left child, the right one follows
-const uint kNodeInstance = 1u; ///< first: instance
-const uint kNodePolygons = 2u; ///< first: entry of primitive_ids; count of them
-const uint kNodePatch = 3u;    ///< first: patch of the surface
-const uint kNodeTile = 4u;     ///< first: tree index
+// Nodes of the scene trees are those of bvh/wide_bvh.h, of six texels: (origin, exponents and child count),
+// three of codes, two of child words. Nodes are numbered in units of two texels, which is what others take.
+const uint kWideNodeUnits = 3u;
+// Words of children: a node, or a leaf of the tree of instances (an instance), of a displaced surface (a
+// patch), or of polygons (entries of primitive_ids).
+const uint kLeafFlag = 0x80000000u;
+const uint kLeafCountShift = 28u; ///< three bits: entries - 1
+const uint kLeafFirstMask = 0x0fffffffu;
+
+// Nodes of the trees over the tiles of a patch, and those of other traversals: (lower x y z, first), (upper x
+// y z, kind_and_count), as bits.
+const uint kNodeInner = 0u; ///< first: node of the left child, the right one follows
+const uint kNodeTile = 4u;  ///< first: tree index
 const uint kNodeKindShift = 28u;
 
 #include "formulas/end.h"

@@ -43,12 +43,22 @@ vec3 load_position_at(const uint place) {
                 texelFetch(positions, first + 2).x);
 }
 
-vec3 load_position(const SurfaceData s, const uint vertex) { return load_position_at(s.first_vertex + vertex); }
+/// The lowest of the vertices that a vertex has its place with.
+uint load_dominant(const SurfaceData s, const uint vertex) {
+    return vertex < s.dominant_count ? vertex : texelFetch(dominants, int(s.first_dominant + vertex - s.dominant_count)).x;
+}
+
+vec3 load_position(const SurfaceData s, const uint vertex) {
+    return load_position_at(s.first_vertex + load_dominant(s, vertex));
+}
 
 vec2 load_uv(const SurfaceData s, const uint vertex) { return texelFetch(uvs, int(s.first_uv + vertex)).xy; }
 
 uvec4 load_quad(const SurfaceData s, const uint patch_index) {
-    return texelFetch(quads, int(s.first_quad + patch_index));
+    if (s.has_wide_quads != 0u) return texelFetch(quads, int(s.first_quad_texel + patch_index));
+    uvec4 pair = texelFetch(quads, int(s.first_quad_texel + (patch_index >> 1u)));
+    uvec2 quad = (patch_index & 1u) == 0u ? pair.xy : pair.zw;
+    return uvec4(quad.x & 0xffffu, quad.x >> 16u, quad.y & 0xffffu, quad.y >> 16u);
 }
 
 bool is_triangle(const uvec4 quad) { return quad.w == quad.z; }
@@ -56,10 +66,6 @@ bool is_triangle(const uvec4 quad) { return quad.w == quad.z; }
 /// Unit normal; not for surfaces without frames.
 vec3 load_normal(const SurfaceData s, const uint vertex) {
     return unpack_unit_normal(texelFetch(frames, int(s.first_frame + vertex)).x);
-}
-
-uint load_dominant(const SurfaceData s, const uint vertex) {
-    return s.first_dominant == kNone ? vertex : texelFetch(dominants, int(s.first_dominant + vertex)).x;
 }
 
 uint load_vertex_tile(const SurfaceData s, const uint vertex) {
@@ -82,8 +88,12 @@ uint load_mips(const SurfaceData s, const uint patch_index) {
 
 /// Packed levels of a patch of an instance, without LOD bias.
 uint find_levels(const InstanceData instance, const uint patch_index) {
-    uint levels = instance.levels & ~(kManyLevels | kMirrored | kShadowCatcher);
+    uint levels = instance.levels & ~(kManyLevels | kMirrored | kShadowCatcher | kNarrowLevels);
     if ((instance.levels & kManyLevels) == 0u) return levels;
+    if ((instance.levels & kNarrowLevels) != 0u) {
+        uint pair = texelFetch(field_levels, int(levels + (patch_index >> 1u))).x;
+        return widen_levels(pair >> (16u * (patch_index & 1u)));
+    }
     return texelFetch(field_levels, int(levels + patch_index)).x;
 }
 

@@ -6,41 +6,40 @@
 const bool kMayOfferTwice = false;
 #include "vulkan/shaders/scene_candidates.glsl"
 
-#include "vulkan/shaders/node_stack.glsl"
+#include "vulkan/shaders/tile_walk.glsl"
+#include "vulkan/shaders/wide_nodes.glsl"
 
-/// Tile directories are traversed on the same stack.
-void enter_tiles(const uint root, const float entry) { push_node(root, entry); }
+/// `word` of a child that is a leaf, of the tree of a surface.
+void enter_leaf(const uint word, const float entry) {
+    uint first = word & kLeafFirstMask;
+    if (surfaces[instances[instance_index].surface].map != kNone) {
+        enter_patch(first, entry);
+        return;
+    }
+    uint count = ((word >> kLeafCountShift) & 7u) + 1u;
+    for (uint k = 0u; k < count; ++k) intersect_polygon(texelFetch(primitive_ids, int(first + k)).x);
+}
 
 /// False if the device ended the loop before the stack was empty.
 bool walk() {
     uint world_size = 0u; // stack entries that belong to the tree of instances
-    push_node(push.root, ray_t_min);
     leave_instance();
-    for (uint popped = 0u; popped < 0xffffffffu; ++popped) {
+    enter_node(push.root, ray_t_min);
+    for (uint taken = 0u; taken < 0xffffffffu; ++taken) {
         if (stack_size == 0u) return true;
-        --stack_size;
-        if (instance_index != kNone && stack_size < world_size) leave_instance();
-        uvec2 top = stack[stack_size];
-        float entry = uintBitsToFloat(top.y);
-        if (entry > find_limit()) continue;
-        uint node = top.x;
-        uint first = texelFetch(nodes, 2 * int(node)).w;
-        uint kind_and_count = texelFetch(nodes, 2 * int(node) + 1).w;
-        uint kind = kind_and_count >> kNodeKindShift;
-        if (kind == kNodeInner)
-            enter_inner(first, entry);
-        else if (kind == kNodeInstance) {
-            if (!is_instance_seen(first)) continue;
+        if (instance_index != kNone && stack_size <= world_size) leave_instance();
+        NextChild next = take_child();
+        if (next.word == kNone) continue;
+        if ((next.word & kLeafFlag) == 0u)
+            enter_node(next.word, next.entry);
+        else if (instance_index == kNone) {
+            uint index = next.word & kLeafFirstMask;
+            if (!is_instance_seen(index)) continue;
             world_size = stack_size;
-            enter_instance(first);
-            push_node(instances[first].root, entry);
-        } else if (kind == kNodePatch)
-            enter_patch(first, entry);
-        else if (kind == kNodeTile)
-            offer_candidate(first, entry);
-        else {
-            uint count = kind_and_count & ((1u << kNodeKindShift) - 1u);
-            for (uint k = 0u; k < count; ++k) intersect_polygon(texelFetch(primitive_ids, int(first + k)).x);
+            enter_instance(index);
+            enter_node(instances[index].root, next.entry);
+        } else {
+            enter_leaf(next.word, next.entry);
             if (push.is_any != 0u && has_hit) return true;
         }
     }

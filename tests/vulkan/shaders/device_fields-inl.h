@@ -53,8 +53,8 @@ struct AllStructs {
     FIELD3(s.world_from_object.z) FIELD3(s.world_from_object.t) FIELD(s.surface) FIELD(s.material) \
     FIELD(s.root) FIELD(s.levels) FIELD(s.visibility_mask)
 #define FIELDS_SURFACE(s) \
-    FIELD(s.first_vertex) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
-    FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_override) FIELD(s.override_count) \
+    FIELD(s.first_vertex) FIELD(s.dominant_count) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
+    FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_quad_texel) FIELD(s.has_wide_quads) FIELD(s.first_override) FIELD(s.override_count) \
     FIELD(s.first_override_word) FIELD(s.map) FIELD(s.first_control) FIELD(s.first_mip) \
     FIELD(s.first_derivative) FIELD(s.has_bilinear_uvs) FIELD(s.first_tangent) FIELD(s.first_uv_set)
 #define FIELDS_MAP(s) \

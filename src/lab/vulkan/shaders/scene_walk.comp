@@ -8,7 +8,7 @@ const bool kMayOfferTwice = true; // a patch has entries in several leaves
 const bool kMayOfferTwice = false;
 #endif
 #include "vulkan/shaders/scene_candidates.glsl"
-#include "vulkan/shaders/node_stack.glsl"
+#include "vulkan/shaders/tile_walk.glsl"
 #include "lab/walks/trail.h"
 #include "formulas/tree.h"
 
@@ -181,23 +181,6 @@ bool resume_walk() {
     walk_state = drop_short_stack(walk_state);
 #endif
     return true;
-}
-
-void enter_tiles(const uint root, const float entry) {
-    push_node(root, entry);
-    while (stack_size > 0u) {
-        --stack_size;
-        uvec2 top = stack[stack_size];
-        float node_entry = uintBitsToFloat(top.y);
-        if (node_entry <= find_limit()) {
-            uint node = top.x;
-            uint first = texelFetch(nodes, 2 * int(node)).w;
-            if (texelFetch(nodes, 2 * int(node) + 1).w >> kNodeKindShift == kNodeInner)
-                enter_inner(first, node_entry);
-            else
-                offer_candidate(first, node_entry);
-        }
-    }
 }
 
 bool walk() {

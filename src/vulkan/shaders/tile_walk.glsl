@@ -1,19 +1,19 @@
-// Traversal stack of nodes with their entry distances; the nearer child is pushed last.
-#ifndef RELIEF_NODE_STACK_GLSL
-#define RELIEF_NODE_STACK_GLSL
+// The walk through the tree over the tiles of a patch, whose nodes are binary; the nearer child is pushed last.
+#ifndef RELIEF_TILE_WALK_GLSL
+#define RELIEF_TILE_WALK_GLSL
 
 #include "vulkan/shaders/scene_candidates.glsl"
 
-layout(constant_id = 1) const uint kStackSize = 128;
+layout(constant_id = kTileStackConstant) const uint kTileStackSize = 1;
 
 /// Nodes and the bits of their entries, in one array: drivers keep small ones in registers, where an index that varies
 /// costs a comparison an entry.
-uvec2 stack[kStackSize];
-uint stack_size = 0u;
+uvec2 tile_stack[kTileStackSize];
+uint tile_stack_size = 0u;
 
 void push_node(const uint node, const float entry) {
-    stack[stack_size] = uvec2(node, floatBitsToUint(entry));
-    ++stack_size;
+    tile_stack[tile_stack_size] = uvec2(node, floatBitsToUint(entry));
+    ++tile_stack_size;
 }
 
 void enter_inner(const uint first, const float parent_entry) {
@@ -31,6 +31,22 @@ void enter_inner(const uint first, const float parent_entry) {
     uint near = is_second_nearer ? 1u : 0u;
     if (wanted[1u - near]) push_node(first + 1u - near, entry[1u - near]);
     if (wanted[near]) push_node(first + near, entry[near]);
+}
+
+void enter_tiles(const uint root, const float entry) {
+    push_node(root, entry);
+    while (tile_stack_size > 0u) {
+        --tile_stack_size;
+        uvec2 top = tile_stack[tile_stack_size];
+        float node_entry = uintBitsToFloat(top.y);
+        if (node_entry <= find_limit()) {
+            uint first = texelFetch(nodes, 2 * int(top.x)).w;
+            if (texelFetch(nodes, 2 * int(top.x) + 1).w >> kNodeKindShift == kNodeInner)
+                enter_inner(first, node_entry);
+            else
+                offer_candidate(first, node_entry);
+        }
+    }
 }
 
 #endif

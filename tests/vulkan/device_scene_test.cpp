@@ -1,0 +1,47 @@
+// What a device keeps in fewer bits where they are enough: scenes for which they are not, beside the CPU
+// engine.
+#include "cast_fixture.h"
+#include "support/bodies.h"
+
+namespace relief::vulkan::tests {
+
+namespace {
+
+class DeviceSceneTest : public GpuTest {
+  protected:
+    void expect_hits_of_cpu(const std::shared_ptr<const PreparedScene>& scene, const RenderSettings& settings,
+                            uint32_t ray_count) {
+        const std::vector<cpu::TraceRay> rays = make_rays(ray_count, 5);
+        expect_same(cast_on_device(device(), *scene, settings, rays, {}), cast_on_cpu(scene, settings, rays),
+                    rays);
+    }
+};
+
+Displacement make_bumps(int edge) {
+    return test::make_displacement(test::make_random_map(edge, edge, 0.01f, 9), DisplacementSpace::object);
+}
+
+TEST_F(DeviceSceneTest, numbers_more_vertices_than_sixteen_bits_count) {
+    RenderSettings settings;
+    settings.surface.level = 1;
+    const auto scene =
+        prepare_scene(test::make_body_scene(test::make_torus(300, 240), make_bumps(64)), settings);
+    ASSERT_GT(scene->surfaces[0].vertex_count(), 0x10000u);
+    expect_hits_of_cpu(scene, settings, 600);
+}
+
+TEST_F(DeviceSceneTest, keeps_levels_of_patches_above_seven) {
+    RenderSettings settings;
+    settings.surface.level = kAutoLevel;
+    settings.image.width = 4000, settings.image.height = 4000;
+    const auto scene =
+        prepare_scene(test::make_body_scene(test::make_cube_sphere(2), make_bumps(2048)), settings);
+    const LevelField& levels = *scene->instances[0].levels;
+    ASSERT_GT(levels.max_level(), 7);
+    ASSERT_FALSE(levels.is_uniform());
+    expect_hits_of_cpu(scene, settings, 200);
+}
+
+} // namespace
+
+} // namespace relief::vulkan::tests
