@@ -49,6 +49,38 @@ class HelpFormatter : public CLI::Formatter {
     mutable bool shows_all_ = false;
 };
 
+/// Options of the command and of those below it that were given.
+std::vector<const CLI::Option*> list_options(const CLI::App& app) {
+    std::vector<const CLI::Option*> options = app.get_options();
+    for (const CLI::App* below : app.get_subcommands()) {
+        const std::vector<const CLI::Option*> more = list_options(*below);
+        options.insert(options.end(), more.begin(), more.end());
+    }
+    return options;
+}
+
+/// CLI11 counts values; this says it of the option that the user typed. Returns where the error is another.
+void refuse_count(const CLI::App& app, const CLI::ParseError& error) {
+    if (error.get_name() != "ArgumentMismatch") return;
+    const std::string message = error.what();
+    for (const CLI::Option* option : list_options(app)) {
+        const std::string name = option->get_name();
+        if (!message.starts_with(name + ": ")) continue;
+        const std::vector<std::string>& values = option->results();
+        if (values.size() > 1 && option->get_items_expected_max() == 1) {
+            const std::string count = values.size() == 2 ? "twice" : fmt::format("{} times", values.size());
+            const bool is_list = option->get_type_name() == "LIST" && !name.ends_with("axes");
+            throw Error(ErrorKind::usage,
+                        {fmt::format("given {}: '{}'", count, fmt::join(values, "', '")), name,
+                         is_list ? fmt::format("one list holds them all: {} {}", name, fmt::join(values, ","))
+                                 : fmt::format("keep one of them: {} {}", name, values.back())});
+        }
+        if (values.empty() && option->get_items_expected_min() == 1)
+            throw Error(ErrorKind::usage,
+                        {"its value is missing", name, fmt::format("{} {}", name, option->get_type_name())});
+    }
+}
+
 } // namespace
 
 int run_guarded(const std::function<int()>& body) {
@@ -83,6 +115,7 @@ std::optional<int> parse_words(CLI::App& app, int argument_count, const char* co
         app.parse(argument_count, arguments);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
+        refuse_count(app, error);
         throw Error(ErrorKind::usage, {error.what(), "",
                                        "relief --help lists the commands, "
                                        "relief COMMAND --help its options"});

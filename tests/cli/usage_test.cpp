@@ -68,6 +68,23 @@ TEST_F(Usage, sizes_and_samples_outside_the_range_tell_the_range) {
     expect_refused({"render", "plane.obj", "--seed", "-1"}, "--seed");
 }
 
+TEST_F(Usage, an_option_given_twice_is_named_with_its_values) {
+    expect_refused({"render", "plane.obj", "--spp", "4", "--spp", "8"},
+                   "--spp: given twice: '4', '8'\nhint: keep one of them: --spp 8\n");
+    expect_refused({"render", "plane.obj", "-o", "a.exr", "-o", "b.exr", "-o", "c.exr"},
+                   "-o: given 3 times: 'a.exr', 'b.exr', 'c.exr'");
+    expect_refused({"convert", "bump.exr", "-o", "a.exr", "--preset", "mudbox", "--from", "maya"},
+                   "given twice: 'mudbox', 'maya'");
+    expect_refused({"render", "plane.obj", "--layers", "depth", "--layers", "N"},
+                   "hint: one list holds them all: --layers depth,N");
+    expect_refused({"render", "plane.obj", "--strict", "--strict", "--sp"}, "'--sp'"); // twice is once
+}
+
+TEST_F(Usage, an_option_without_its_value_says_what_is_missing) {
+    expect_refused({"render", "plane.obj", "--fov"}, "--fov: its value is missing\nhint: --fov D\n");
+    expect_refused({"merge", "a.exr", "b.exr", "-o"}, "-o: its value is missing\nhint: -o FILE\n");
+}
+
 TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
     expect_refused({"render", "plane.obj", "--size", "8x8", "--crop", "0,0,9,8"}, "8x8");
     expect_refused({"render", "plane.obj", "--crop", "4,0,4,8"}, "x0 < x1");
