@@ -6,12 +6,15 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/suggest.h"
 #include "commands.h"
 #include "common/exit_codes.h"
 #include "common/inputs.h"
@@ -39,22 +42,57 @@ std::string list_scenes() {
                        fmt::join(peer_scene_names(), ", "));
 }
 
+bool is_sample(const std::string& name) {
+    const std::vector<std::string> samples = sample_scene_names();
+    return std::find(samples.begin(), samples.end(), name) != samples.end();
+}
+
 /// A sample scene, or a scene of the renderer comparisons.
 Scene make_named_scene(const SceneOptions& options, const ProgressFunction& on_progress) {
-    const std::vector<std::string> peers = peer_scene_names();
-    if (std::find(peers.begin(), peers.end(), options.name) == peers.end())
+    if (is_sample(options.name))
         return make_sample_scene(options.name, options.is_instanced ? Instancing::shared : Instancing::none,
                                  on_progress);
-    if (options.is_instanced)
-        throw Error(ErrorKind::usage,
-                    {"nothing in this scene can be shared", options.name, "leave out --instanced"});
     return make_peer_scene(options.name, 1, PeerWorld::sky);
 }
 
 SceneMotion make_named_motion(const SceneOptions& options, const ProgressFunction& on_progress) {
-    const std::vector<std::string> samples = sample_scene_names();
-    const bool is_sample = std::find(samples.begin(), samples.end(), options.name) != samples.end();
-    return is_sample ? make_sample_motion(options.name, on_progress) : SceneMotion{};
+    return is_sample(options.name) ? make_sample_motion(options.name, on_progress) : SceneMotion{};
+}
+
+void check_name(const SceneOptions& options) {
+    if (options.name.empty())
+        throw Error(ErrorKind::usage, {"no scene named", "", "known: " + list_scenes()});
+    if (is_sample(options.name)) return;
+    const std::vector<std::string> peers = peer_scene_names();
+    if (std::find(peers.begin(), peers.end(), options.name) == peers.end()) {
+        std::vector<std::string> names = sample_scene_names();
+        names.insert(names.end(), peers.begin(), peers.end());
+        const std::string hint =
+            suggest_word(options.name, std::vector<std::string_view>(names.begin(), names.end()));
+        throw Error(ErrorKind::usage, {"there is no sample scene of this name", options.name,
+                                       hint.starts_with("did") ? hint : "known: " + list_scenes()});
+    }
+    if (options.is_instanced)
+        throw Error(ErrorKind::usage,
+                    {"nothing in this scene can be shared", options.name, "leave out --instanced"});
+}
+
+/// The folder and those in it, before the scene, which takes longer. Throws Error{usage}.
+void make_folders(const std::filesystem::path& folder) {
+    std::error_code code;
+    for (std::filesystem::path part = folder; !part.empty(); part = part.parent_path()) {
+        if (std::filesystem::exists(part, code) && !std::filesystem::is_directory(part, code))
+            throw Error(ErrorKind::usage, {"is a file, not a folder", part.string(),
+                                           "a scene is a folder of files: name another one, -o DIR"});
+        if (part == part.parent_path()) break;
+    }
+    for (const std::filesystem::path& part : {folder, folder / "meshes", folder / "maps"}) {
+        std::filesystem::create_directories(part, code);
+        if (code)
+            throw Error(ErrorKind::usage, {"the folder cannot be made: " + code.message(), part.string(),
+                                           "check the rights of what it is in, or name another one, -o DIR"});
+    }
+    check_text_writable(folder / "scene.json");
 }
 
 /// Contents of a file; empty if it does not exist.
@@ -71,11 +109,11 @@ std::string find_free_copy(const std::string& file) {
 }
 
 int run_scene(const SceneOptions& options) {
-    if (options.name.empty())
-        throw Error(ErrorKind::usage, {"no scene named", "", "known: " + list_scenes()});
+    check_name(options);
     const std::filesystem::path folder = options.folder.empty() ? options.name : options.folder;
     const std::filesystem::path file = folder / "scene.json";
     refuse_link_loop(file, ErrorKind::failed);
+    make_folders(folder);
     const std::string before = read_text(file);
     const std::string copy = find_free_copy(file.string());
     if (!before.empty()) write_text_file(copy, before);

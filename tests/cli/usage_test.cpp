@@ -85,6 +85,20 @@ TEST_F(Usage, an_option_without_its_value_says_what_is_missing) {
     expect_refused({"merge", "a.exr", "b.exr", "-o"}, "-o: its value is missing\nhint: -o FILE\n");
 }
 
+TEST_F(Usage, the_folder_of_a_sample_scene_is_made_before_the_scene) {
+    write("file", "kept");
+    expect_refused({"scene", "rock", "-o", "file"}, "error: file: is a file, not a folder\nhint: a scene is");
+    expect_refused({"scene", "rock", "-o", "file/a/b"}, "error: file: is a file, not a folder");
+    expect_refused({"scene", "rock", "-o", "/proc/relief/a"},
+                   "error: /proc/relief/a: the folder cannot be made");
+    std::filesystem::create_directory(folder_ / "half");
+    write("half/maps", "kept");
+    expect_refused({"scene", "rock", "-o", "half"}, "half/maps");
+    expect_refused({"scene", "rokc", "-o", "new"}, "hint: did you mean 'rock'?");
+    EXPECT_FALSE(exists("new"));
+    EXPECT_EQ(read("file"), "kept");
+}
+
 TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
     expect_refused({"render", "plane.obj", "--size", "8x8", "--crop", "0,0,9,8"}, "8x8");
     expect_refused({"render", "plane.obj", "--crop", "4,0,4,8"}, "x0 < x1");
