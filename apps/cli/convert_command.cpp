@@ -193,6 +193,7 @@ int run_convert(const ConvertOptions& options) {
     if (options.input.empty() || options.output.empty())
         refuse("one file in and one file out are needed", "", "relief convert IN -o OUT");
     refuse_foreign_file(options.input);
+    check_map_words(options.from), check_map_words(options.to);
     keep_files({options.input, options.mesh, options.displacement_map}, options.output);
     check_text_writable(options.output);
     const FileKind input = get_kind(options.input);

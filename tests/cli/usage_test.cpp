@@ -85,6 +85,18 @@ TEST_F(Usage, an_option_without_its_value_says_what_is_missing) {
     expect_refused({"merge", "a.exr", "b.exr", "-o"}, "-o: its value is missing\nhint: -o FILE\n");
 }
 
+TEST_F(Usage, an_unknown_preset_is_wrong_usage_on_a_command_line_and_bad_input_in_a_file) {
+    expect_refused({"render", "plane.obj", "--vdm", "bump.exr", "--preset", "bogus"}, "preset 'bogus'");
+    expect_refused({"inspect", "bump.exr", "--preset", "bogus"}, "preset 'bogus'");
+    expect_refused({"convert", "bump.exr", "-o", "b.exr", "--from", "bogus"}, "preset 'bogus'");
+    expect_refused({"convert", "bump.exr", "-o", "b.exr", "--to", "bogus"}, "preset 'bogus'");
+    expect_refused({"convert", "plane.obj", "--vdm", "bump.exr", "-o", "b.ply", "--from", "bogus"},
+                   "'bogus'");
+    write("scene.json", R"({"displacements": {"d": {"file": "bump.exr", "preset": "bogus"}}})");
+    expect_refused({"render", "scene.json"}, "preset 'bogus'", 3);
+    expect_refused({"convert", "scene.json", "-o", "b.ply"}, "preset 'bogus'", 3);
+}
+
 TEST_F(Usage, the_folder_of_a_sample_scene_is_made_before_the_scene) {
     write("file", "kept");
     expect_refused({"scene", "rock", "-o", "file"}, "error: file: is a file, not a folder\nhint: a scene is");
