@@ -64,9 +64,10 @@ void check_layer(const std::string& layer) {
                     {fmt::format("'{}' is no name of a light group", group), "--layers",
                      fmt::format("1 to {} letters, digits, '_' and '-'", kMaxLightGroupName)});
     }
-    if (std::find(std::begin(kLayers), std::end(kLayers), layer) == std::end(kLayers))
-        throw Error(ErrorKind::usage,
-                    {fmt::format("unknown layer '{}'", layer), "--layers", suggest_word(layer, kLayers)});
+    if (std::find(std::begin(kLayers), std::end(kLayers), layer) != std::end(kLayers)) return;
+    const std::string hint = suggest_word(layer, kLayers);
+    throw Error(ErrorKind::usage, {fmt::format("unknown layer '{}'", layer), "--layers",
+                                   hint.empty() ? fmt::format("known: {}", fmt::join(kLayers, ", ")) : hint});
 }
 
 /// Adds an option parsed by `parse`; its value is called `value` in the help.

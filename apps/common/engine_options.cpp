@@ -60,7 +60,7 @@ void add_engine_options(CLI::App& verb, EngineOptions& o, RenderSettings& s) {
     });
     add("--isa", "NAME", "of the CPU engine: best (default), avx512, avx2, sse4, neon, scalar",
         [&o, &s](const std::string& text) {
-            s.device.isa = parse_word("--isa", text, kIsas);
+            s.device.isa = parse_word("--isa", text, kIsas, "relief devices lists those of this machine");
             o.cpu_only.push_back("--isa");
         });
 }

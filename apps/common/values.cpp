@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 
 #include "relief/render.h"
 
@@ -25,6 +26,21 @@ const char* skip_plus(const std::string& text) {
     return text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
 }
 
+/// Of a text that is no number in [low, high].
+std::string hint_at_number(const std::string& text, double low, double high, bool is_whole) {
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const std::from_chars_result result = std::from_chars(skip_plus(text), end, value);
+    const char* const what = is_whole ? "digits alone" : "digits alone, with a point";
+    if (result.ec != std::errc() || std::isnan(value)) return what;
+    if (value < low) return fmt::format("the least is {}", low);
+    if (value > high) return fmt::format("the most is {}", high);
+    if (is_whole && value != std::floor(value)) return "a whole number";
+    if (const size_t comma = text.find(','); !is_whole && comma != std::string::npos)
+        return fmt::format("a point in place of the comma: {}", std::string(text).replace(comma, 1, "."));
+    return fmt::format("{}: {}", what, value);
+}
+
 } // namespace
 
 int64_t parse_integer(const std::string& option, const std::string& text, int64_t low, int64_t high) {
@@ -32,7 +48,8 @@ int64_t parse_integer(const std::string& option, const std::string& text, int64_
     const char* end = text.data() + text.size();
     const std::from_chars_result result = std::from_chars(skip_plus(text), end, value);
     if (result.ec != std::errc() || result.ptr != end || value < low || value > high)
-        refuse_value(option, text, fmt::format("an integer from {} to {}", low, high));
+        refuse_value(option, text, fmt::format("an integer from {} to {}", low, high),
+                     hint_at_number(text, double(low), double(high), true));
     return value;
 }
 
@@ -41,7 +58,8 @@ double parse_number(const std::string& option, const std::string& text, double l
     const char* end = text.data() + text.size();
     const std::from_chars_result result = std::from_chars(skip_plus(text), end, value);
     if (result.ec != std::errc() || result.ptr != end || !(value >= low && value <= high))
-        refuse_value(option, text, fmt::format("a number from {:g} to {:g}", low, high));
+        refuse_value(option, text, fmt::format("a number from {:g} to {:g}", low, high),
+                     hint_at_number(text, low, high, false));
     return value;
 }
 
@@ -91,7 +109,8 @@ int parse_level(const std::string& text) {
     try {
         return int(parse_integer("--level", text, 0, kMaxLevel));
     } catch (const Error&) {
-        refuse_value("--level", text, fmt::format("'auto' or an integer from 0 to {}", kMaxLevel));
+        refuse_value("--level", text, fmt::format("'auto' or an integer from 0 to {}", kMaxLevel),
+                     "auto: fine enough for the size on screen");
     }
 }
 

@@ -22,7 +22,8 @@ namespace relief::cli {
 /// ASCII letters in lower case.
 std::string to_lower_case(std::string text);
 
-/// Integer in [low, high]; anything else, or trailing text, is a usage error that tells the range.
+/// Integer in [low, high]; anything else, or trailing text, is a usage error that tells the range, and in its
+/// hint the nearest end of it, or the number that the text begins with.
 int64_t parse_integer(const std::string& option, const std::string& text, int64_t low, int64_t high);
 
 /// Finite number in [low, high].
@@ -44,17 +45,19 @@ std::vector<std::string> split(const std::string& text, char separator);
 /// Extension in lower case with its dot: ".exr".
 std::string get_lower_extension(const std::filesystem::path& file);
 
-/// A word of a fixed list, with the nearest one as the hint.
+/// A word of a fixed list, with the nearest one as the hint; where none is near, with `help`.
 template <class T, size_t N>
 T parse_word(const std::string& option, const std::string& text,
-             const std::array<std::pair<std::string_view, T>, N>& words) {
+             const std::array<std::pair<std::string_view, T>, N>& words,
+             const char* help = "--help-all tells what they mean") {
     std::array<std::string_view, N> known;
     for (size_t i = 0; i < N; ++i) {
         if (words[i].first == text) return words[i].second;
         known[i] = words[i].first;
     }
     std::string hint = suggest_word(text, known);
-    if (!hint.starts_with("did")) hint.clear(); // a list, which the message has already
+    const bool is_option = option.starts_with("-");             // else a word of a file
+    if (!hint.starts_with("did")) hint = is_option ? help : ""; // not the list, which the message has already
     throw Error(ErrorKind::usage,
                 {fmt::format("'{}' is not one of: {}", text, fmt::join(known, ", ")), option, hint});
 }

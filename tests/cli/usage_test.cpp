@@ -68,6 +68,25 @@ TEST_F(Usage, sizes_and_samples_outside_the_range_tell_the_range) {
     expect_refused({"render", "plane.obj", "--seed", "-1"}, "--seed");
 }
 
+TEST_F(Usage, numbers_outside_the_range_have_a_hint) {
+    expect_refused({"render", "plane.obj", "--bounces", "-1"}, "hint: the least is 0");
+    expect_refused({"render", "plane.obj", "--spp", "-3"}, "hint: the least is 1");
+    expect_refused({"render", "plane.obj", "--level", "13"}, "hint: auto: fine enough");
+    expect_refused({"render", "plane.obj", "--spp", "9999999"}, "hint: the most is 1048576");
+    expect_refused({"render", "plane.obj", "--spp", "64samples"}, "hint: digits alone: 64");
+    expect_refused({"render", "plane.obj", "--spp", "2.5"}, "hint: a whole number");
+    expect_refused({"render", "plane.obj", "--spp", "many"}, "hint: digits alone");
+    expect_refused({"render", "plane.obj", "--zoom", "0"}, "hint: the least is 0.01");
+    expect_refused({"render", "plane.obj", "--fov", "4,5"}, "hint: a point in place of the comma: 4.5");
+    expect_refused({"render", "plane.obj", "--fov", "45deg"}, "hint: digits alone, with a point: 45");
+}
+
+TEST_F(Usage, words_that_no_list_has_get_a_hint) {
+    expect_refused({"render", "plane.obj", "--layers", "bogus"}, "hint: known: depth, N, N_camera");
+    expect_refused({"render", "plane.obj", "--isa", "bogus"}, "hint: relief devices lists those");
+    expect_refused({"render", "plane.obj", "--lod", "bogus"}, "hint: --help-all tells what they mean");
+}
+
 TEST_F(Usage, an_option_given_twice_is_named_with_its_values) {
     expect_refused({"render", "plane.obj", "--spp", "4", "--spp", "8"},
                    "--spp: given twice: '4', '8'\nhint: keep one of them: --spp 8\n");
