@@ -24,6 +24,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// What the suffix promises.
+const char* name_kind(const fs::path& file) {
+    if (is_mesh_file(file)) return "mesh";
+    if (is_picture_name(file)) return "map or picture";
+    return get_lower_extension(file) == ".json" ? "scene file" : "file";
+}
+
 std::string suggest_file(const fs::path& file) {
     if (file.filename().string().find('*') != std::string::npos) return "no file has a name of this pattern";
     std::error_code code;
@@ -34,12 +41,13 @@ std::string suggest_file(const fs::path& file) {
     std::vector<std::string> names;
     for (fs::directory_iterator it(folder, code), end; !code && it != end && names.size() < kMostNames;
          it.increment(code))
-        names.push_back(it->path().filename().string());
+        if (it->is_regular_file(code)) names.push_back(it->path().filename().string());
     std::sort(names.begin(), names.end());
     const std::vector<std::string_view> views(names.begin(), names.end());
     const std::string hint = suggest_word(file.filename().string(), views);
-    return hint.starts_with("did") ? hint
-                                   : std::string("check the name; paths in a scene are relative to its file");
+    if (hint.starts_with("did")) return hint;
+    return fmt::format("check the name: no {} of a similar name is in the folder '{}'", name_kind(file),
+                       folder.string());
 }
 
 /// What a new file must not take the place of: /dev/null, say, or /dev/stdout, which may stand for a file.

@@ -230,6 +230,19 @@ TEST_F(Usage, a_missing_file_is_bad_input_with_its_name) {
     expect_refused({"compare", "nothing.exr", "bump.exr"}, "nothing.exr", 3);
 }
 
+TEST_F(Usage, the_hint_of_a_missing_file_says_its_kind_or_the_name_of_one_like_it) {
+    expect_refused({"render", "plan.obj"}, "hint: did you mean 'plane.obj'?", 3);
+    expect_refused({"inspect", "bumpy.exr"}, "hint: did you mean 'bump.exr'?", 3);
+    expect_refused({"render", "plane.obj", "--vdm", "bmp.exr"}, "hint: did you mean 'bump.exr'?", 3);
+    expect_refused({"convert", "other.ply", "-o", "a.obj"},
+                   "check the name: no mesh of a similar name is in the folder '.'", 3);
+    expect_refused({"inspect", "nothing.exr"},
+                   "check the name: no map or picture of a similar name is in the folder '.'", 3);
+    expect_refused({"render", "nothing.json"},
+                   "check the name: no scene file of a similar name is in the folder '.'", 3);
+    expect_refused({"inspect", "gone/nothing.exr"}, "hint: the folder 'gone' does not exist", 3);
+}
+
 TEST_F(Usage, empty_names_are_refused) {
     const std::string message = "-o: an empty text names no";
     expect_refused({"render", "plane.obj", "-o", ""}, message);
