@@ -144,18 +144,24 @@ void describe_convention(const Displacement& map, MapMeaning meaning, const MapS
     facts.push_back({"looks_like", describe_looks(statistics, convention), {}});
 }
 
-/// What the texels say, and the mesh if it can be used.
+/// What the texels say, and the mesh if the map can be laid onto it.
 struct Reading {
     MapStatistics statistics;
     const Mesh* mesh = nullptr;
+    bool is_misfit = false; ///< there is a mesh, and the map cannot
     MapConvention convention;
 };
 
 Reading read_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh) {
     Reading reading;
     reading.statistics = measure_map(map.tiles, find_known_midlevel(map, meaning));
-    if (mesh && !mesh->uv_indices.empty() && find_mesh_faults(*mesh).is_sound()) reading.mesh = mesh;
+    const bool has_uvs = mesh && !mesh->uv_indices.empty();
+    if (has_uvs && find_mesh_faults(*mesh).is_sound()) reading.mesh = mesh;
+    reading.is_misfit = mesh && !reading.mesh;
     reading.convention = guess_convention(map, reading.statistics, reading.mesh);
+    if (reading.is_misfit && !reading.convention.space.is_clear)
+        reading.convention.space.reason = fmt::format("the mesh {}, and the map cannot be laid onto it",
+                                                      has_uvs ? "has faults" : "has no uvs");
     return reading;
 }
 
@@ -173,7 +179,7 @@ Displacement apply_guess(const Displacement& map, const Reading& reading) {
 /// Of a map whose axes are known or can be guessed.
 void note_folds(const Displacement& map, MapMeaning meaning, const Reading& reading,
                 std::vector<Finding>& findings) {
-    if (reading.statistics.bad_count > 0) return;
+    if (reading.statistics.bad_count > 0 || reading.is_misfit) return;
     if (meaning == MapMeaning::unknown && !reading.convention.axes.is_clear && !reading.mesh) return;
     const Displacement meant = meaning == MapMeaning::declared ? map : apply_guess(map, reading);
     const std::optional<double> share = measure_fold_share(meant, reading.mesh);

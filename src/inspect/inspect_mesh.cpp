@@ -246,8 +246,8 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
     if (mesh.uv_indices.empty()) {
         if (displacement)
             add_error(result.findings, "E-NOUV",
-                      "no uvs, which its map needs; unwrap the mesh, or export it with uvs (many exporters "
-                      "leave them out unless told)");
+                      "no uvs, and the map cannot be laid onto it; unwrap the mesh, or export it with uvs "
+                      "(many exporters leave them out unless told)");
         else
             add_warning(result.findings, "W-NOUV",
                         "no uvs: the mesh cannot be displaced by a map; export it with uvs");

@@ -32,7 +32,12 @@ TEST_F(Inspect, exit_codes_follow_the_findings) {
     EXPECT_EQ(run({"inspect", "bare.obj", "--strict"}).exit_code, 6);
     const CommandResult both = run({"inspect", "bump.exr", "--mesh", "bare.obj"});
     EXPECT_EQ(both.exit_code, 3);
-    EXPECT_TRUE(contains(both.output, "error: E-NOUV: mesh: no uvs")) << both.output;
+    EXPECT_TRUE(contains(both.output, "error: E-NOUV: mesh: no uvs, and the map cannot be laid onto it"))
+        << both.output;
+    EXPECT_TRUE(contains(both.output, ": the mesh has no uvs, and the map cannot be laid onto it\n"))
+        << both.output;
+    EXPECT_FALSE(contains(both.output, "without a mesh")) << both.output;
+    EXPECT_FALSE(contains(both.output, "I-FOLD")) << both.output;
 }
 
 TEST_F(Inspect, json_tells_what_cannot_be_read) {
