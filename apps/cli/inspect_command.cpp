@@ -183,6 +183,7 @@ Inspection inspect_file(const InspectOptions& options) {
         break;
     }
     const Scene scene = load_scene(options.file, make_mesh_reader());
+    refuse_empty_scene(scene, options.file);
     progress.tell(kRead);
     return inspect_as_scene(scene, options, progress);
 }

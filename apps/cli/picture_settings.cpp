@@ -40,6 +40,7 @@ RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
     const RenderSettings settings = check_picture(options, scene);
     aim_scene(scene, choose_aim(options, settings.image),
               float(settings.image.width) / float(settings.image.height));
+    refuse_empty_scene(scene, options.input); // --ground may have added an object
     return settings;
 }
 

@@ -1,5 +1,6 @@
 #include "common/inputs.h"
 
+#include <algorithm>
 #include <memory>
 #include <system_error>
 
@@ -27,6 +28,14 @@ std::vector<std::string> list_files(const Scene& scene) {
     if (scene.environment) add(scene.environment->texture);
     for (const Light& light : scene.lights) add(light.color_texture);
     return files;
+}
+
+void refuse_empty_scene(const Scene& scene, const std::filesystem::path& file) {
+    if (!scene.objects.empty() || scene.environment) return;
+    if (std::ranges::any_of(scene.lights, &Light::is_visible_to_camera)) return;
+    throw Error(ErrorKind::bad_input,
+                {"the scene has no objects and no environment: there is nothing to see", file.string(),
+                 "add 'objects', each with a mesh of 'meshes'; relief scene ear writes a scene to look at"});
 }
 
 void refuse_link_loop(const std::filesystem::path& file, ErrorKind kind) {

@@ -18,6 +18,9 @@ FileKind get_kind(const std::filesystem::path& file);
 /// Files that a scene was read from, as far as known: scene file, meshes, maps, textures.
 std::vector<std::string> list_files(const Scene& scene);
 
+/// Throws Error{bad_input}: nothing of the scene can be seen, neither objects nor an environment nor a light.
+void refuse_empty_scene(const Scene& scene, const std::filesystem::path& file);
+
 /// Throws Error{kind} for a symbolic link, or a path through one, that leads back to itself.
 void refuse_link_loop(const std::filesystem::path& file, ErrorKind kind);
 

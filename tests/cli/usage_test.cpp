@@ -130,6 +130,18 @@ TEST_F(Usage, the_folder_of_a_sample_scene_is_made_before_the_scene) {
     EXPECT_EQ(read("file"), "kept");
 }
 
+TEST_F(Usage, a_scene_with_nothing_to_see_is_bad_input) {
+    for (const char* text : {"{}", R"({"lights": [{"type": "sun"}]})"}) {
+        write("empty.json", text);
+        expect_refused({"render", "empty.json"}, "no objects and no environment", 3);
+        expect_refused({"render", "empty.json", "--pixel", "0,0"}, "hint: add 'objects'", 3);
+        expect_refused({"inspect", "empty.json"}, "no objects and no environment", 3);
+    }
+    write("sky.json", R"({"environment": {"color": [1, 1, 1]}})");
+    EXPECT_EQ(run({"render", "sky.json", "--size", "4x4", "--spp", "1", "-o", "sky.exr"}).exit_code, 0);
+    EXPECT_EQ(run({"inspect", "sky.json"}).exit_code, 0);
+}
+
 TEST_F(Usage, parts_of_the_picture_must_lie_in_it) {
     expect_refused({"render", "plane.obj", "--size", "8x8", "--crop", "0,0,9,8"}, "8x8");
     expect_refused({"render", "plane.obj", "--crop", "4,0,4,8"}, "x0 < x1");
