@@ -38,9 +38,9 @@ RenderSettings check_picture(const RenderOptions& options, Scene& scene) {
 RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
     add_assumption_warnings(scene, options);
     const RenderSettings settings = check_picture(options, scene);
+    refuse_empty_scene(scene, options.input);
     aim_scene(scene, choose_aim(options, settings.image),
               float(settings.image.width) / float(settings.image.height));
-    refuse_empty_scene(scene, options.input); // --ground may have added an object
     return settings;
 }
 

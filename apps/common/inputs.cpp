@@ -34,7 +34,7 @@ void refuse_empty_scene(const Scene& scene, const std::filesystem::path& file) {
     if (!scene.objects.empty() || scene.environment) return;
     if (std::ranges::any_of(scene.lights, &Light::is_visible_to_camera)) return;
     throw Error(ErrorKind::bad_input,
-                {"the scene has no objects and no environment: there is nothing to see", file.string(),
+                {"the scene has no objects, no environment and no light that the camera sees", file.string(),
                  "add 'objects', each with a mesh of 'meshes'; relief scene ear writes a scene to look at"});
 }
 

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "relief/render.h"
 
@@ -26,19 +27,33 @@ const char* skip_plus(const std::string& text) {
     return text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
 }
 
-/// Of a text that is no number in [low, high].
-std::string hint_at_number(const std::string& text, double low, double high, bool is_whole) {
+/// Where the whole of a text is a number.
+std::optional<double> read_whole_number(const std::string& text) {
     double value = 0;
     const char* end = text.data() + text.size();
     const std::from_chars_result result = std::from_chars(skip_plus(text), end, value);
+    if (result.ec != std::errc() || result.ptr != end || std::isnan(value)) return std::nullopt;
+    return value;
+}
+
+/// Of a text that is no number in [low, high].
+std::string hint_at_number(const std::string& text, double low, double high, bool is_whole) {
+    if (const std::optional<double> value = read_whole_number(text)) {
+        if (*value < low) return fmt::format("the least is {}", low);
+        if (*value > high) return fmt::format("the most is {}", high);
+        return "a whole number";
+    }
+    std::string pointed = text;
+    std::ranges::replace(pointed, ',', '.');
+    const std::optional<double> meant = read_whole_number(pointed);
+    if (!is_whole && pointed != text && meant && *meant >= low && *meant <= high)
+        return fmt::format("a point in place of the comma: {}", pointed);
     const char* const what = is_whole ? "digits alone" : "digits alone, with a point";
-    if (result.ec != std::errc() || std::isnan(value)) return what;
-    if (value < low) return fmt::format("the least is {}", low);
-    if (value > high) return fmt::format("the most is {}", high);
-    if (is_whole && value != std::floor(value)) return "a whole number";
-    if (const size_t comma = text.find(','); !is_whole && comma != std::string::npos)
-        return fmt::format("a point in place of the comma: {}", std::string(text).replace(comma, 1, "."));
-    return fmt::format("{}: {}", what, value);
+    const size_t unit = text.find_first_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ%");
+    const std::optional<double> before = read_whole_number(text.substr(0, unit));
+    const bool is_right =
+        before && *before >= low && *before <= high && (!is_whole || *before == std::floor(*before));
+    return is_right ? fmt::format("{}: {}", what, *before) : what;
 }
 
 } // namespace

@@ -228,7 +228,7 @@ RenderResult render(Scene scene, const RenderSettings& settings, RenderObserver*
 /// all engines and structures.
 std::string describe_settings(const RenderSettings& settings);
 
-/// Traversals of a structure that an engine supports, the default first.
+/// Traversals of a structure that an engine supports, the default first; both support the same.
 std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure);
 
 /// Names of the instruction sets that this machine supports, best first; always includes "scalar".

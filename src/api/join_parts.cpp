@@ -17,6 +17,10 @@ void join_part(const FilmPart& part, RenderSettings settings, uint64_t scene_has
     settings.image.crop = part.window, settings.image.first_sample = part.first_sample;
     Film read = make_film(settings.image, mattes);
     const Window &inner = read.window(), &outer = film.window();
+    if (settings.image.noise > 0 && before > 0)
+        throw Error(ErrorKind::bad_input,
+                    {"samples that follow others are not joined where noise ends pixels", "",
+                     "render parts of the picture with all their samples, or without image.noise"});
     const bool is_inside = inner.x0 >= outer.x0 && inner.y0 >= outer.y0 && inner.x1 <= outer.x1 &&
                            inner.y1 <= outer.y1 && before >= 0;
     if (!is_inside)

@@ -1,4 +1,4 @@
-// Eight-wide BVH with 8-bit boxes, made from a binary one, for the CPU engine (after Ylitie et al. 2017).
+// Eight-wide BVH with 8-bit boxes, made from a binary one, for both engines (after Ylitie et al. 2017).
 #pragma once
 
 #include <bit>

@@ -12,6 +12,7 @@ namespace relief {
 
 void Film::join(const Film& part, uint32_t before) {
     DCHECK(part.stride_ == stride_ && part.layers_.size() == layers_.size());
+    DCHECK(!batches_ || before % SampleBatches::kSizes.back() == 0);
     const Window& window = part.window_;
     size_t other = 0;
     for (int y = window.y0; y < window.y1; ++y)

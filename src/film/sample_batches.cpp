@@ -8,15 +8,15 @@ namespace relief {
 
 namespace {
 
-double dot_itself(const Vec3f& v) { return double(v.x) * v.x + double(v.y) * v.y + double(v.z) * v.z; }
+double square(const Vec3<double>& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 
 } // namespace
 
 void SampleBatches::add(size_t pixel, const Vec3f& radiance, uint32_t count) {
     Sums& sums = pixels_[pixel];
     for (size_t k = 0; k < kSizes.size(); ++k) {
-        sums.open[k] += radiance;
-        if (count % kSizes[k] == 0) sums.squares[k] += dot_itself(sums.open[k]), sums.open[k] = {};
+        sums.open[k] += Vec3<double>{radiance.x, radiance.y, radiance.z};
+        if (count % kSizes[k] == 0) sums.squares[k] += square(sums.open[k]), sums.open[k] = {};
     }
 }
 
@@ -38,10 +38,9 @@ std::optional<double> SampleBatches::estimate_variance(size_t pixel, const doubl
     if (k == 0) return std::nullopt;
     const Sums& batches = pixels_[pixel];
     const double size = kSizes[k - 1], n = count / kSizes[k - 1];
-    const Vec3f& open = batches.open[k - 1];
-    const double full[3] = {sums[0] - open.x, sums[1] - open.y, sums[2] - open.z};
-    const double square = full[0] * full[0] + full[1] * full[1] + full[2] * full[2];
-    const double of_sum = std::max(0.0, batches.squares[k - 1] - square / n) / (n - 1);
+    const Vec3<double>& open = batches.open[k - 1];
+    const Vec3<double> full{sums[0] - open.x, sums[1] - open.y, sums[2] - open.z};
+    const double of_sum = std::max(0.0, batches.squares[k - 1] - square(full) / n) / (n - 1);
     return of_sum / (size * count); // over size^2 it is that of a batch's mean
 }
 

@@ -14,15 +14,15 @@ namespace relief {
 
 /// Owen-scrambled samples are closer to their mean than independent ones. Those that follow each other are
 /// stratified together: a batch of them is one draw, and its mean varies less than that of independent
-/// samples. After batch means in the analysis of simulations (Conway 1963).
+/// samples. Batch means: Conway 1963, Some Tactical Problems in Digital Simulation.
 class SampleBatches {
   public:
     static constexpr std::array<uint32_t, 2> kSizes{16, 64};
     /// Fewer say less of the variance than the samples in them do.
     static constexpr uint32_t kLeastCount = 4;
     struct Sums {
-        std::array<Vec3f, kSizes.size()> open{};     ///< of the samples behind the last full batch
-        std::array<double, kSizes.size()> squares{}; ///< of the sums of full batches, over all channels
+        std::array<Vec3<double>, kSizes.size()> open{}; ///< of the samples behind the last full batch
+        std::array<double, kSizes.size()> squares{};    ///< of the sums of full batches, over all channels
     };
 
     explicit SampleBatches(size_t pixel_count) : pixels_(pixel_count) {}

@@ -82,7 +82,8 @@ bool is_black(const Vec3f& color) { return color.x == 0 && color.y == 0 && color
 
 void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
     if (scene.objects.empty()) {
-        warnings.emplace_back("the scene has no objects; only its environment, if it has one, is seen");
+        warnings.emplace_back(
+            "the scene has no objects; only its environment and lights that the camera sees are there");
         return;
     }
     const bool has_light =

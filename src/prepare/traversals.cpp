@@ -5,14 +5,11 @@
 
 namespace relief {
 
-std::vector<TraversalKind> available_traversals(EngineKind engine, StructureKind structure) {
+std::vector<TraversalKind> available_traversals(EngineKind, StructureKind structure) {
     using T = TraversalKind;
     switch (structure) {
     case StructureKind::bvh:
-        if (engine == EngineKind::cpu)
-            return {T::wide,      T::stack, T::restart_trail, T::parent_link,
-                    T::skip_link, T::trail, T::pair_trail};
-        return {T::stack, T::restart_trail, T::parent_link, T::skip_link, T::trail, T::pair_trail};
+        return {T::wide, T::stack, T::restart_trail, T::parent_link, T::skip_link, T::trail, T::pair_trail};
     case StructureKind::lbvh:
         return {T::trail, T::stack, T::restart_trail, T::parent_link, T::skip_link, T::pair_trail};
     case StructureKind::kdtree:
@@ -28,8 +25,8 @@ TraversalKind choose_traversal(const RenderSettings& settings, EngineKind engine
 }
 
 bool is_default_traversal(const RenderSettings& settings, EngineKind engine) {
-    const TraversalKind own = engine == EngineKind::cpu ? TraversalKind::wide : TraversalKind::stack;
-    return settings.experiment.structure == StructureKind::bvh && choose_traversal(settings, engine) == own;
+    return settings.experiment.structure == StructureKind::bvh &&
+           choose_traversal(settings, engine) == TraversalKind::wide;
 }
 
 const char* traversal_name(TraversalKind traversal) {

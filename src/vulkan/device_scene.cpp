@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "base/check.h"
 #include "bvh/wide_bvh.h"
 #include "formulas/levels.h"
 #include "formulas/mips.h"
@@ -48,7 +49,10 @@ uint32_t compute_depth(const WideBvh& tree) {
     std::vector<uint32_t> depths(tree.nodes.size(), 1);
     for (size_t k = 0; k < tree.nodes.size(); ++k)
         for (const uint32_t child : std::span(tree.nodes[k].child, tree.nodes[k].child_count))
-            if (!WideNode::is_leaf(child)) depths[child] = depths[k] + 1;
+            if (!WideNode::is_leaf(child)) {
+                DCHECK(child > k);
+                depths[child] = depths[k] + 1;
+            }
     return depths.empty() ? 0 : *std::ranges::max_element(depths);
 }
 
@@ -109,12 +113,16 @@ struct DeviceScene::Arrays {
             else
                 levels.back() |= scalar::narrow_levels(packed) << 16;
         }
+        check_primitive_count(levels.size(), scalar::kNarrowLevels, "list of the levels of all patches",
+                              "ask for one level for all: surface.level");
         return is_narrow ? first | scalar::kNarrowLevels : first;
     }
 
     /// Entries of primitive_ids for a tree of polygons; returns the first.
     uint32_t append_ids(const WideBvh& tree, uint32_t count) {
         const uint32_t first = uint32_t(primitive_ids.size());
+        check_primitive_count(uint64_t(first) + count, uint64_t(WideNode::kMaxLeafFirst) + 1,
+                              "list of the polygons of all meshes", "split the scene, or use the CPU engine");
         for (uint32_t k = 0; k < count; ++k) primitive_ids.push_back(tree.primitive_at(k));
         return first;
     }
@@ -260,8 +268,8 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
     for (const Surface& surface : scene.surfaces) {
         scalar::SurfaceData data{};
         data.first_vertex = uint32_t(arrays.positions.size());
-        data.dominant_count =
-            append(arrays.positions, surface.positions) == kNone ? 0 : uint32_t(surface.positions.size());
+        data.dominant_count = uint32_t(surface.positions.size());
+        append(arrays.positions, surface.positions);
         has_bicubic_ |= !surface.controls.empty();
         data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
         for (const InnerControls& controls : surface.controls)
@@ -306,12 +314,14 @@ void DeviceScene::add_trees(const PreparedScene& scene, Arrays& arrays) {
         const Bvh bvh = build_surface_bvh(surface, compute_patch_boxes(surface));
         const WideBvh tree = make_wide_bvh(bvh);
         deepest_surface = std::max(deepest_surface, compute_depth(tree));
+        DCHECK(!surface.has_displacement || tree.primitive_ids.empty());
         const uint32_t first_leaf =
             surface.has_displacement ? 0 : arrays.append_ids(tree, uint32_t(surface.patch_count()));
         arrays.surface_roots.push_back(arrays.append_tree(tree, first_leaf));
         arrays.surface_boxes.push_back(bvh.nodes.empty() ? Box{} : bvh.nodes[0].box());
     }
     const WideBvh instances = make_wide_bvh(build_instance_bvh(scene, arrays.surface_boxes));
+    DCHECK(instances.primitive_ids.empty());
     root_ = arrays.append_tree(instances, 0);
     stack_size_ = compute_depth(instances) + deepest_surface;
     node_count_ = arrays.nodes.size();

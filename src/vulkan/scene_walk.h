@@ -10,7 +10,7 @@
 
 namespace relief::vulkan {
 
-/// A node of a scene tree: two texels.
+/// A node of a tree over tiles, or of another traversal than the engine's own: two texels.
 struct NodeTexels {
     Vec3f lower;
     uint32_t first;

@@ -78,7 +78,10 @@ TEST_F(Usage, numbers_outside_the_range_have_a_hint) {
     expect_refused({"render", "plane.obj", "--spp", "many"}, "hint: digits alone");
     expect_refused({"render", "plane.obj", "--zoom", "0"}, "hint: the least is 0.01");
     expect_refused({"render", "plane.obj", "--fov", "4,5"}, "hint: a point in place of the comma: 4.5");
+    expect_refused({"render", "plane.obj", "--noise", "0,02"}, "hint: a point in place of the comma: 0.02");
     expect_refused({"render", "plane.obj", "--fov", "45deg"}, "hint: digits alone, with a point: 45");
+    expect_refused({"render", "plane.obj", "--fov", "45,deg"}, "hint: digits alone, with a point\n");
+    expect_refused({"render", "plane.obj", "--bounces", "3,5"}, "hint: digits alone\n");
 }
 
 TEST_F(Usage, words_that_no_list_has_get_a_hint) {
@@ -133,9 +136,10 @@ TEST_F(Usage, the_folder_of_a_sample_scene_is_made_before_the_scene) {
 TEST_F(Usage, a_scene_with_nothing_to_see_is_bad_input) {
     for (const char* text : {"{}", R"({"lights": [{"type": "sun"}]})"}) {
         write("empty.json", text);
-        expect_refused({"render", "empty.json"}, "no objects and no environment", 3);
+        expect_refused({"render", "empty.json"}, "no objects, no environment", 3);
+        expect_refused({"render", "empty.json", "--ground"}, "no objects, no environment", 3);
         expect_refused({"render", "empty.json", "--pixel", "0,0"}, "hint: add 'objects'", 3);
-        expect_refused({"inspect", "empty.json"}, "no objects and no environment", 3);
+        expect_refused({"inspect", "empty.json"}, "no objects, no environment", 3);
     }
     write("sky.json", R"({"environment": {"color": [1, 1, 1]}})");
     EXPECT_EQ(run({"render", "sky.json", "--size", "4x4", "--spp", "1", "-o", "sky.exr"}).exit_code, 0);
@@ -162,8 +166,9 @@ TEST_F(Usage, only_what_exists_can_be_chosen) {
     expect_refused({"render", "plane.obj", "--traversal", "narrow"}, "one of: auto, wide, stack");
     expect_refused({"render", "plane.obj", "--structure", "kdtree", "--traversal", "trail"},
                    "valid there: push-down, restart, backtrack");
-    expect_refused({"render", "plane.obj", "--engine", "vulkan", "--traversal", "wide"},
-                   "valid there: stack");
+    expect_refused(
+        {"render", "plane.obj", "--engine", "vulkan", "--structure", "lbvh", "--traversal", "wide"},
+        "valid there: trail");
     expect_refused({"render", "plane.obj", "--engine", "vulkan", "--method", "raster"},
                    "one of: compute, fragment, hybrid");
     expect_refused({"render", "plane.obj", "--frames", "0"}, "frames are those of a scene file");

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -67,6 +68,39 @@ TEST(FilmError, sees_from_256_samples_on_that_batches_of_64_agree) {
     EXPECT_GT(film.estimate_error(pixel), 0.05);
     add(film, 0, 0, 1);
     EXPECT_EQ(film.estimate_error(pixel), 0.0);
+}
+
+TEST(FilmError, is_none_of_equal_samples) {
+    for (const float radiance : {0.05f, 0.1f, 0.7f, 1.3f, 3.0f}) {
+        Film film = make_film();
+        for (int k = 1; k <= 1100; ++k) {
+            add(film, 0, 0, radiance);
+            if (k > 1 && k % 16 == 0)
+                ASSERT_LT(film.estimate_error({0, 0, 1, 1}), 1e-7) << radiance << " " << k;
+        }
+    }
+}
+
+TEST(FilmError, of_cleared_pixels_is_that_of_their_new_samples) {
+    std::mt19937 random(3);
+    Film film = make_film(), fresh = make_film();
+    add_independent(film, 100, random);
+    film.clear(kAll);
+    for (int k = 0; k < 80; ++k) add(film, 1, 1, float(k % 7)), add(fresh, 1, 1, float(k % 7));
+    EXPECT_EQ(film.estimate_error({1, 1, 2, 2}), fresh.estimate_error({1, 1, 2, 2}));
+}
+
+TEST(FilmError, is_kept_in_files) {
+    std::mt19937 random(4);
+    Film film = make_film(), read = make_film();
+    add_independent(film, 70, random);
+    std::stringstream bytes;
+    film.write(bytes, "a picture");
+    read.read(bytes, "a picture");
+    EXPECT_EQ(read.estimate_error(kAll), film.estimate_error(kAll));
+    std::mt19937 more(5), same(5);
+    add_independent(film, 58, more), add_independent(read, 58, same);
+    EXPECT_EQ(read.estimate_error(kAll), film.estimate_error(kAll));
 }
 
 TEST(FilmError, is_the_same_of_sums_of_batches_and_of_joined_films) {

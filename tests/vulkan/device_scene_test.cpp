@@ -1,6 +1,9 @@
 // What a device keeps in fewer bits where they are enough: scenes for which they are not, beside the CPU
 // engine.
+#include <fmt/format.h>
+
 #include "cast_fixture.h"
+#include "math/affine.h"
 #include "support/bodies.h"
 
 namespace relief::vulkan::tests {
@@ -40,6 +43,30 @@ TEST_F(DeviceSceneTest, keeps_levels_of_patches_above_seven) {
     ASSERT_GT(levels.max_level(), 7);
     ASSERT_FALSE(levels.is_uniform());
     expect_hits_of_cpu(scene, settings, 200);
+}
+
+/// Two quads share a texel, and so do the levels of two patches: where a surface ends in the middle of one,
+/// the next begins a new one.
+TEST_F(DeviceSceneTest, keeps_surfaces_of_an_odd_number_of_patches_apart) {
+    RenderSettings settings;
+    settings.surface.level = kAutoLevel;
+    settings.image.width = 400, settings.image.height = 400;
+    Scene source = test::make_body_scene(test::make_torus(5, 9), make_bumps(256));
+    source.meshes.push_back(test::make_torus(3, 7));
+    source.meshes.push_back(test::make_torus(7, 5));
+    for (const uint32_t mesh : {1u, 2u}) {
+        Object object = source.objects[0];
+        object.name = fmt::format("body {}", mesh);
+        object.mesh = mesh;
+        object.world_from_object = make_scale({0.4f, 0.4f + 0.2f * float(mesh), 0.4f});
+        if (mesh == 2) object.displacement = kNoIndex;
+        source.objects.push_back(object);
+    }
+    const auto scene = prepare_scene(std::move(source), settings);
+    ASSERT_EQ(scene->surfaces[0].patch_count() % 2, 1u);
+    ASSERT_FALSE(scene->instances[0].levels->is_uniform());
+    ASSERT_FALSE(scene->instances[1].levels->is_uniform());
+    expect_hits_of_cpu(scene, settings, 1500);
 }
 
 } // namespace

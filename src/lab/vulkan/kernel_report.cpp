@@ -51,6 +51,7 @@ TreeForm find_form(TreeKind kind) {
 const std::map<uint32_t, std::string> kConstantNames = {
     {0, "group_size"},
     {scalar::kSmoothConstant, "smooth"},
+    {scalar::kTileStackConstant, "tile_stack"},
     {scalar::kLayersConstant, "layers"},
     {scalar::kNormalMapsConstant, "normal_maps"},
     {scalar::kLightTreeConstant, "light_tree"},

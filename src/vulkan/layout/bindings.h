@@ -45,7 +45,7 @@ const uint kBindRasterNearest = kBindNextPathList; ///< uint64: (distance, rank)
 
 // Uniform texel buffers, all immutable during a render.
 const uint kFirstTexelBinding = 32u;
-const uint kBindNodes = 32u;        ///< rgba32ui: two per node
+const uint kBindNodes = 32u;        ///< rgba32ui: six per node, or two (device_scene.h)
 const uint kBindPositions = 33u;    ///< r32f: three per vertex
 const uint kBindUvs = 34u;          ///< rg32f
 const uint kBindFrames = 35u;       ///< rg32ui: PackedFrame

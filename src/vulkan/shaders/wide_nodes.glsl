@@ -83,7 +83,7 @@ NextChild take_child() {
     uvec3 top = stack[stack_size - 1u];
     NodeGrid grid = load_grid(top.x);
     NextChild next = NextChild(kNone, kInfinity);
-    uint nearest = 0u;
+    uint nearest = findLSB(top.y);
     [[dont_unroll]] for (uint left = top.y; left != 0u; left &= left - 1u) {
         uint slot = findLSB(left);
         float entry = max(cross_child(grid, load_codes(top.x, slot >> 2u), slot).entry, uintBitsToFloat(top.z));
