@@ -58,7 +58,7 @@ TEST(Settings, of_costs_are_refused_where_no_tree_is_built_by_them) {
     expect_refused(
         [](auto& s) {
             choose_vulkan(s), s.experiment.sah_costs = SahCosts{},
-                              s.experiment.traversal = TraversalKind::stack;
+                              s.experiment.traversal = TraversalKind::wide;
         },
         where);
     expect_refused(
