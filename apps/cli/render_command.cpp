@@ -45,11 +45,19 @@ void refuse_picture(const RenderOptions& options) {
 
 /// What a resumed picture has of its own, beyond what this render was asked for.
 void tell_of_earlier_samples(const RenderResult& result, const ImageSettings& image) {
-    if (result.statistics.camera_rays == 0)
-        fmt::print(stderr, "relief: the picture had {} samples already: --spp {} adds none\n",
-                   result.whole_samples, image.spp);
     const std::string& range = result.image.metadata.at("relief:samples"); // "A:B"
     const int most = std::stoi(range.substr(range.find(':') + 1)) - image.first_sample;
+    if (result.statistics.camera_rays == 0 && image.noise > 0)
+        fmt::print(stderr,
+                   "relief: no samples are added: pixels have {} already, or as little noise as asked for\n",
+                   image.spp);
+    else if (result.statistics.camera_rays == 0)
+        fmt::print(stderr, "relief: the picture had {} samples already: --spp {} adds none\n",
+                   result.whole_samples, image.spp);
+    if (image.noise > 0 && most > image.spp)
+        fmt::print(stderr,
+                   "relief: noisy pixels keep the up to {} samples that they had, more than --spp {}\n", most,
+                   image.spp);
     const bool is_uneven = image.noise == 0 && image.time_limit_s == 0 && most > result.whole_samples;
     if (is_uneven)
         fmt::print(stderr,

@@ -20,6 +20,9 @@ Vec3f parse_factors(const std::string& option, const std::string& text) {
         return float(parse_number(option, part, -kLargestFactor, kLargestFactor));
     };
     if (parts.size() == 3) return {parse(parts[0]), parse(parts[1]), parse(parts[2])};
+    if (parts.size() == 2)
+        refuse_value(option, text, "a number, or three separated by commas",
+                     fmt::format("a point in place of the comma: {}.{}", parts[0], parts[1]));
     if (parts.size() != 1) refuse_value(option, text, "a number, or three separated by commas");
     const float all = parse(parts[0]);
     return {all, all, all};

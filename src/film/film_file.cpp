@@ -23,6 +23,11 @@ constexpr std::string_view kStart = "relief film 3\n";
                                        "go on with the settings that they were made with, or render anew"});
 }
 
+[[noreturn]] void refuse_damage(const std::string& message) {
+    throw Error(ErrorKind::bad_input, {message, "sums of samples to go on from",
+                                       "the file is cut off, or was changed: render anew"});
+}
+
 class Writer {
   public:
     explicit Writer(std::ostream& stream) : stream_(stream) {}
@@ -69,12 +74,13 @@ class Reader {
         const uint64_t expected = hash_.value();
         uint64_t hash = 0;
         if (!stream_.read(reinterpret_cast<char*>(&hash), sizeof hash) || hash != expected)
-            refuse("they are damaged");
+            refuse_damage("they are damaged");
     }
 
   private:
     void take_bytes(void* bytes, size_t size) {
-        if (!stream_.read(static_cast<char*>(bytes), std::streamsize(size))) refuse("they end too early");
+        if (!stream_.read(static_cast<char*>(bytes), std::streamsize(size)))
+            refuse_damage("they end too early");
         hash_.add_bytes(bytes, size);
     }
 

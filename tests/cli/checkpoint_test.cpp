@@ -102,6 +102,27 @@ TEST_F(Checkpoint, tells_what_cannot_be_gone_on_with) {
     EXPECT_NE(result.errors.find("a.exr.film is replaced"), std::string::npos) << result.errors;
 }
 
+/// Of noise: how many samples a pixel has is decided by what it needs, and by the most that were asked for.
+TEST_F(Checkpoint, tells_of_noisy_pixels_that_have_more_samples_than_asked_for) {
+    EXPECT_EQ(render({"--noise", "0.0001", "--spp", "64", "--checkpoint", "5", "-o", "a.exr"}).exit_code, 0);
+    const CommandResult fewer = render({"--noise", "0.0001", "--spp", "48", "--resume", "a.exr"});
+    EXPECT_EQ(fewer.exit_code, 0);
+    EXPECT_NE(fewer.errors.find("no samples are added: pixels have 48 already"), std::string::npos)
+        << fewer.errors;
+    EXPECT_NE(fewer.errors.find("keep the up to 64 samples"), std::string::npos) << fewer.errors;
+    const CommandResult same = render({"--noise", "0.0001", "--spp", "64", "--resume", "a.exr"});
+    EXPECT_EQ(same.errors.find("keep the up to"), std::string::npos) << same.errors;
+}
+
+TEST_F(Checkpoint, tells_of_sums_of_samples_that_are_cut_off) {
+    EXPECT_EQ(render({"--spp", "2", "--checkpoint", "5", "-o", "a.exr"}).exit_code, 0);
+    const std::string sums = read("a.exr.film");
+    write("a.exr.film", sums.substr(0, sums.size() / 2));
+    const CommandResult result = render({"--spp", "4", "--resume", "a.exr"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_NE(result.errors.find("hint: the file is cut off"), std::string::npos) << result.errors;
+}
+
 TEST_F(Checkpoint, a_denoiser_that_is_not_there_is_missed_before_the_scene_is_read) {
     const CommandResult result = finish(start({"render", "no.obj", "--denoise", "-o", "a.png"},
                                               [] { setenv("RELIEF_OIDN", "/nowhere/at/all", 1); }));

@@ -79,6 +79,8 @@ TEST_F(Usage, numbers_outside_the_range_have_a_hint) {
     expect_refused({"render", "plane.obj", "--zoom", "0"}, "hint: the least is 0.01");
     expect_refused({"render", "plane.obj", "--fov", "4,5"}, "hint: a point in place of the comma: 4.5");
     expect_refused({"render", "plane.obj", "--noise", "0,02"}, "hint: a point in place of the comma: 0.02");
+    expect_refused({"render", "plane.obj", "--vdm", "bump.exr", "--midlevel", "0,5"},
+                   "hint: a point in place of the comma: 0.5");
     expect_refused({"render", "plane.obj", "--fov", "45deg"}, "hint: digits alone, with a point: 45");
     expect_refused({"render", "plane.obj", "--fov", "45,deg"}, "hint: digits alone, with a point\n");
     expect_refused({"render", "plane.obj", "--bounces", "3,5"}, "hint: digits alone\n");
