@@ -38,6 +38,9 @@ std::optional<double> read_whole_number(const std::string& text) {
 
 /// Of a text that is no number in [low, high].
 std::string hint_at_number(const std::string& text, double low, double high, bool is_whole) {
+    const bool is_option =
+        text.starts_with("--") || (text.size() == 2 && text[0] == '-' && std::isalpha(text[1]));
+    if (is_option) return "the value is missing before it";
     if (const std::optional<double> value = read_whole_number(text)) {
         if (*value < low) return fmt::format("the least is {}", low);
         if (*value > high) return fmt::format("the most is {}", high);

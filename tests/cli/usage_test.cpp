@@ -81,6 +81,8 @@ TEST_F(Usage, numbers_outside_the_range_have_a_hint) {
     expect_refused({"render", "plane.obj", "--noise", "0,02"}, "hint: a point in place of the comma: 0.02");
     expect_refused({"render", "plane.obj", "--vdm", "bump.exr", "--midlevel", "0,5"},
                    "hint: a point in place of the comma: 0.5");
+    expect_refused({"render", "plane.obj", "--noise", "-o", "a.exr"}, "hint: the value is missing");
+    expect_refused({"render", "plane.obj", "--spp", "--size", "8x8"}, "hint: the value is missing");
     expect_refused({"render", "plane.obj", "--fov", "45deg"}, "hint: digits alone, with a point: 45");
     expect_refused({"render", "plane.obj", "--fov", "45,deg"}, "hint: digits alone, with a point\n");
     expect_refused({"render", "plane.obj", "--bounces", "3,5"}, "hint: digits alone\n");
