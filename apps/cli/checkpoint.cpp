@@ -60,7 +60,8 @@ Checkpoints FilmKeeper::checkpoints() {
     Checkpoints checkpoints;
     if (!options_.is_on()) return checkpoints;
     if (options_.minutes > 0) checkpoints.interval_s = 60 * options_.minutes;
-    if (resumed_.is_open()) checkpoints.resume = &resumed_;
+    if (resumed_.is_open())
+        checkpoints.resume = &resumed_, checkpoints.resume_name = name_film(options_.resumed).string();
     checkpoints.save = [this](const std::function<void(std::ostream&)>& write) {
         try {
             write_file(file_, write);

@@ -201,11 +201,13 @@ struct Checkpoints {
     /// multiple of 16 samples. Null: none. Throws Error{bad_input} for a stream that is damaged or of another
     /// picture or version; scenes with hash 0 (in memory) are told apart by nothing but these settings.
     std::istream* resume = nullptr;
+    std::string resume_name; ///< place of errors in `resume`, such as a file
     /// What renders of parts of the same picture wrote, in any order: their samples are not traced again. Of
     /// one part, each pixel keeps its bits. Ranges of samples are added in double precision, which gives the
     /// bits of one render of all samples unless an addition had to round. Each pixel must have all samples
     /// before those of a part. Throws Error{bad_input}, whose place is FilmPart::name, for a part that is
-    /// damaged, of another picture, or lacks samples before it.
+    /// damaged, of another picture, or lacks samples before it, and with image.noise for samples after
+    /// others.
     std::vector<FilmPart> parts;
 };
 

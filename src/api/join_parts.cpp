@@ -33,6 +33,16 @@ void join_part(const FilmPart& part, RenderSettings settings, uint64_t scene_has
 
 } // namespace
 
+void resume_film(const Checkpoints& checkpoints, const std::string& identity, Film& film) {
+    if (!checkpoints.resume) return;
+    try {
+        film.read(*checkpoints.resume, identity);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::bad_input || checkpoints.resume_name.empty()) throw;
+        throw Error(error.kind(), {error.message(), checkpoints.resume_name, error.hint()});
+    }
+}
+
 void join_parts(const std::vector<FilmPart>& parts, const RenderSettings& settings, uint64_t scene_hash,
                 const std::shared_ptr<const InstanceMattes>& mattes, Film& film) {
     std::vector<const FilmPart*> order;

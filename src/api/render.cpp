@@ -69,7 +69,7 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         const auto mattes = make_instance_mattes(scene, settings.image.layers);
         Film film = make_film(settings.image, mattes);
         const std::string identity = describe_samples(settings, scene_hash);
-        if (checkpoints.resume) film.read(*checkpoints.resume, identity);
+        resume_film(checkpoints, identity, film);
         join_parts(checkpoints.parts, settings, scene_hash, mattes, film);
         std::optional<Stage> stage = set_up(std::move(scene), settings, observer);
         statistics.prepare_s = total.seconds();

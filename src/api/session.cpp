@@ -218,7 +218,7 @@ bool Session::Implementation::trace_moving(double frame, const UpdateScene& upda
     const Camera camera = editor->scene()->camera;
     const std::string identity = describe_samples(settings, scene_hash);
     film = std::make_unique<Film>(make_film(settings.image, mattes));
-    if (checkpoints.resume) film->read(*checkpoints.resume, identity);
+    resume_film(checkpoints, identity, *film);
     join_parts(checkpoints.parts, settings, scene_hash, mattes, *film);
     RenderControl control(observer);
     control.save.interval_s = checkpoints.interval_s;

@@ -60,7 +60,8 @@ class Reader {
     template <class T> void take(std::vector<T>& values, size_t most, size_t least) {
         uint64_t count = 0;
         take_bytes(&count, sizeof count);
-        if (count > most || count < least) refuse("they are of another picture, or of other layers");
+        if (count > most || count < least)
+            refuse("the sums of samples are of another picture, or of other layers");
         values.resize(size_t(count));
         take_bytes(values.data(), size_t(count) * sizeof(T));
     }
@@ -74,13 +75,13 @@ class Reader {
         const uint64_t expected = hash_.value();
         uint64_t hash = 0;
         if (!stream_.read(reinterpret_cast<char*>(&hash), sizeof hash) || hash != expected)
-            refuse_damage("they are damaged");
+            refuse_damage("the sums of samples are damaged");
     }
 
   private:
     void take_bytes(void* bytes, size_t size) {
         if (!stream_.read(static_cast<char*>(bytes), std::streamsize(size)))
-            refuse_damage("they end too early");
+            refuse_damage("the sums of samples end too early");
         hash_.add_bytes(bytes, size);
     }
 
@@ -104,9 +105,10 @@ void Film::write(std::ostream& stream, const std::string& identity) const {
 void Film::read(std::istream& stream, const std::string& identity) {
     Reader reader(stream);
     if (reader.take_text(kStart.size()) != kStart)
-        refuse("this is no file of them, or one of another version");
+        refuse("this holds no sums of samples, or those of another version");
     const std::string found = reader.take_text(1 << 16);
-    if (found != identity) refuse("they are of another picture: " + describe_difference(identity, found));
+    if (found != identity)
+        refuse("the sums of samples are of another picture: " + describe_difference(identity, found));
     reader.take(sums_), reader.take(counts_), reader.take(hit_counts_), reader.take(depths_),
         reader.take(ids_);
     if (objects_) reader.take(objects_->slots());

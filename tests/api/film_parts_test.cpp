@@ -91,7 +91,8 @@ TEST(FilmParts, are_refused_by_name) {
     bytes[bytes.size() / 2] = char(bytes[bytes.size() / 2] ^ 1);
     std::vector<FilmPart> damaged = parts;
     damaged[2] = make_film_part(bytes, "the damaged one", 0, {0, 0, kWidth, 13});
-    EXPECT_NE(find_refusal(damaged).find("the damaged one: they are damaged"), std::string::npos);
+    EXPECT_NE(find_refusal(damaged).find("the damaged one: the sums of samples are damaged"),
+              std::string::npos);
     damaged[2].open = [] { return std::unique_ptr<std::istream>(); };
     EXPECT_NE(find_refusal(damaged).find("the damaged one: it cannot be read"), std::string::npos);
 }

@@ -120,6 +120,8 @@ TEST_F(Checkpoint, tells_of_sums_of_samples_that_are_cut_off) {
     write("a.exr.film", sums.substr(0, sums.size() / 2));
     const CommandResult result = render({"--spp", "4", "--resume", "a.exr"});
     EXPECT_EQ(result.exit_code, 3);
+    EXPECT_NE(result.errors.find("error: a.exr.film: the sums of samples end too early"), std::string::npos)
+        << result.errors;
     EXPECT_NE(result.errors.find("hint: the file is cut off"), std::string::npos) << result.errors;
 }
 
