@@ -27,8 +27,8 @@ const char* skip_plus(const std::string& text) {
     return text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
 }
 
-/// Where the whole of a text is a number.
-std::optional<double> read_whole_number(const std::string& text) {
+/// Nothing where a text is not a number from its beginning to its end.
+std::optional<double> read_entire_number(const std::string& text) {
     double value = 0;
     const char* end = text.data() + text.size();
     const std::from_chars_result result = std::from_chars(skip_plus(text), end, value);
@@ -36,24 +36,24 @@ std::optional<double> read_whole_number(const std::string& text) {
     return value;
 }
 
-/// Of a text that is no number in [low, high].
+/// What to write in place of a text that was not taken as a number in [low, high].
 std::string hint_at_number(const std::string& text, double low, double high, bool is_whole) {
     const bool is_option =
         text.starts_with("--") || (text.size() == 2 && text[0] == '-' && std::isalpha(text[1]));
     if (is_option) return "the value is missing before it";
-    if (const std::optional<double> value = read_whole_number(text)) {
+    if (const std::optional<double> value = read_entire_number(text)) {
         if (*value < low) return fmt::format("the least is {}", low);
         if (*value > high) return fmt::format("the most is {}", high);
         return "a whole number";
     }
     std::string pointed = text;
     std::ranges::replace(pointed, ',', '.');
-    const std::optional<double> meant = read_whole_number(pointed);
+    const std::optional<double> meant = read_entire_number(pointed);
     if (!is_whole && pointed != text && meant && *meant >= low && *meant <= high)
         return fmt::format("a point in place of the comma: {}", pointed);
     const char* const what = is_whole ? "digits alone" : "digits alone, with a point";
     const size_t unit = text.find_first_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ%");
-    const std::optional<double> before = read_whole_number(text.substr(0, unit));
+    const std::optional<double> before = read_entire_number(text.substr(0, unit));
     const bool is_right =
         before && *before >= low && *before <= high && (!is_whole || *before == std::floor(*before));
     return is_right ? fmt::format("{}: {}", what, *before) : what;

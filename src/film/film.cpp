@@ -254,7 +254,8 @@ void Film::add(int x, int y, const FilmSums& added, float alpha) {
     if (needs_hit_ids()) add_mattes(index, added.hit_ids);
     for (const Layer& layer : layers_)
         add_layer_sums(sums + layer.sum_offset, kLayerKinds[layer.kind].source, added);
-    DCHECK(!batches_ || (counts_[index] - 1) / 16 == (counts_[index] - added.count) / 16);
+    constexpr uint32_t kBatch = SampleBatches::kSizes.front();
+    DCHECK(!batches_ || (counts_[index] - 1) / kBatch == (counts_[index] - added.count) / kBatch);
     if (batches_) batches_->add(index, added.radiance, counts_[index]);
 }
 
