@@ -74,6 +74,7 @@ PatchTreeCache::PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree)
     }
     const auto without_table = [&](size_t bytes) { return bytes - std::min(bytes, table_bytes()); };
     cap_bytes_ = without_table(limits.cap_bytes), most_bytes_ = without_table(limits.most_bytes);
+    while (!memory_.add(cap_bytes_)) cap_bytes_ = cap_bytes_ / 2; // where the system sets a limit
 }
 
 PatchTreeCache::~PatchTreeCache() {
@@ -199,22 +200,15 @@ void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
         return allocate_aligned(bytes);
     }
     if (slot_count_ == 0) return nullptr;
-    const auto has_room = [&] { return allocated_.load() + bytes <= cap_bytes_; };
-    if (!has_room()) {
+    void* memory = memory_.allocate(bytes);
+    if (!memory) {
         free_retired(context);
+        memory = memory_.allocate(bytes);
+        if (!memory && grow()) memory = memory_.allocate(bytes);
         // Unlinked entries become free when other workers move on; more would only empty the table.
-        if (!has_room() && allocated_.load() - retired_.load() + bytes > cap_bytes_ && !grow())
-            evict(context, bytes);
-        if (!has_room()) return nullptr;
+        if (!memory && retired_.load() < find_reserve(bytes)) evict(context, bytes);
     }
-    const size_t now = allocated_.fetch_add(bytes) + bytes;
-    if (now > cap_bytes_) { // another worker took the room in between
-        allocated_.fetch_sub(bytes);
-        return nullptr;
-    }
-    note_peak(now);
-    void* memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!memory) allocated_.fetch_sub(bytes);
+    if (memory) note_peak(allocated_.fetch_add(bytes) + bytes);
     return memory;
 }
 
@@ -231,7 +225,8 @@ PatchTreeCache::OwnedTrees::OwnedTrees(PatchTreeCache& cache, TraceContext& cont
 PatchTreeCache::OwnedTrees::~OwnedTrees() {
     for (CachedTree* tree : context_.owned) {
         context_.recent.place(tree->key).epoch = 0;
-        cache_.free_tree(tree);
+        cache_.allocated_.fetch_sub(tree->byte_count);
+        std::free(static_cast<void*>(tree));
     }
     context_.owned.clear();
     context_.owns_trees = false;
@@ -289,13 +284,15 @@ bool PatchTreeCache::grow() {
         rebuilt_bytes_.store(0); // looks again after as many builds
         return false;
     }
-    if (cap_bytes_.compare_exchange_strong(cap, wanted)) rebuilt_bytes_.store(0);
+    if (cap_bytes_.compare_exchange_strong(cap, wanted)) {
+        rebuilt_bytes_.store(0);
+        if (!memory_.add(wanted - cap)) return false;
+    }
     return true;
 }
 
 void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
-    // A little more than requested, so that the next builds find room, and no endless search.
-    const size_t target = std::max(bytes, cap_bytes_ / 64);
+    const size_t target = find_reserve(bytes); // and no endless search
     const size_t step_count = std::min(2 * slot_count_, kLongestSearch);
     size_t unlinked = 0;
     for (size_t step = 0; step < step_count && unlinked < target; ++step) {
@@ -335,7 +332,7 @@ void PatchTreeCache::free_older(TraceContext& context, uint64_t epoch) {
 
 void PatchTreeCache::free_tree(CachedTree* tree) {
     allocated_.fetch_sub(tree->byte_count);
-    std::free(static_cast<void*>(tree));
+    memory_.free(tree);
 }
 
 TraceCounters PatchTreeCache::sum_counters() const {

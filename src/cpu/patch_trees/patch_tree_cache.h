@@ -6,6 +6,7 @@
 // one visit. The image never depends on any of this.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,7 @@
 
 #include "cpu/patch_trees/given_up_trees.h"
 #include "cpu/patch_trees/patch_tree.h"
+#include "cpu/patch_trees/tree_memory.h"
 #include "cpu/patch_trees/tree_slot.h"
 #include "relief/render.h"
 
@@ -174,10 +176,13 @@ class PatchTreeCache {
     void note_peak(size_t now);
     void own(TraceContext& context, CachedTree* tree) const;
     CachedTree* find_owned(TraceContext& context, const TreeKey& key) const;
+    /// What an eviction makes room for, a little more than `bytes`, so that the next builds find some.
+    size_t find_reserve(size_t bytes) const { return std::max(bytes, cap_bytes_.load() / 64); }
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<TreeSlot>); }
 
     std::atomic<size_t> cap_bytes_; ///< without the table
     size_t most_bytes_;             ///< likewise
+    TreeMemory memory_;
     GivenUpTrees given_up_;
     std::atomic<size_t> rebuilt_bytes_{0}; ///< since the cap was set
     BuildTreeFunction build_tree_;

@@ -17,12 +17,12 @@ Vec3f make_color(const Texture& texture, const std::array<float, 4>& channels) {
 Vec2f size_of(const Texture& texture) { return {float(texture.width), float(texture.height)}; }
 
 /// The four texels about a place in texels from the centre of texel (0, 0); repeated in x.
-struct Footprint {
+struct FourTexels {
     uint32_t x0, x1, y0, y1;
     float fx, fy;
 };
 
-Footprint find_footprint(const Texture& texture, const Vec2f& at, WrapMode wrap_y) {
+FourTexels find_four_texels(const Texture& texture, const Vec2f& at, WrapMode wrap_y) {
     const float whole_x = floor_texel(at.x), whole_y = floor_texel(at.y);
     const auto column = [&](int64_t i) { return uint32_t(wrap_index(i, texture.width, WrapMode::repeat)); };
     const auto row = [&](int64_t i) { return uint32_t(wrap_index(i, texture.height, wrap_y)); };
@@ -30,15 +30,15 @@ Footprint find_footprint(const Texture& texture, const Vec2f& at, WrapMode wrap_
     return {column(x), column(x + 1), row(y), row(y + 1), at.x - whole_x, at.y - whole_y};
 }
 
-Vec3f fetch_bilinear(const Texture& texture, const Footprint& at) {
+Vec3f fetch_bilinear(const Texture& texture, const FourTexels& at) {
     return make_color(texture, filter_channels(read_channels(texture, at.x0, at.y0),
                                                read_channels(texture, at.x1, at.y0),
                                                read_channels(texture, at.x0, at.y1),
                                                read_channels(texture, at.x1, at.y1), at.fx, at.fy));
 }
 
-Footprint find_latlong(const Texture& texture, const Vec2f& position) {
-    return find_footprint(texture, scalar::locate_latlong(position, size_of(texture)), WrapMode::clamp);
+FourTexels find_latlong(const Texture& texture, const Vec2f& position) {
+    return find_four_texels(texture, scalar::locate_latlong(position, size_of(texture)), WrapMode::clamp);
 }
 
 } // namespace
@@ -49,8 +49,8 @@ Vec3f fetch_texel(const Texture& texture, uint32_t x, uint32_t y) {
 
 Vec3f fetch_texture(const Texture& texture, const Vec2f& uv) {
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return fetch_texel(texture, 0, 0);
-    return fetch_bilinear(
-        texture, find_footprint(texture, scalar::locate_texture_uv(uv, size_of(texture)), WrapMode::repeat));
+    return fetch_bilinear(texture, find_four_texels(texture, scalar::locate_texture_uv(uv, size_of(texture)),
+                                                    WrapMode::repeat));
 }
 
 Vec3f fetch_spline(const Texture& texture, const Vec2f& uv) {
