@@ -32,11 +32,11 @@ std::shared_ptr<const Texture> enlarge(const Texture& map, uint32_t times) {
     large->width = map.width * times, large->height = map.height * times;
     const auto repeat = [&](const auto& from, auto& to) {
         if (from.empty()) return;
-        to.resize(size_t(4) * large->width * large->height);
-        for (size_t k = 0; k < to.size() / 4; ++k) {
-            const size_t x = k % large->width / times, y = k / large->width / times;
-            std::copy_n(from.begin() + ptrdiff_t(4 * (y * map.width + x)), 4, to.begin() + ptrdiff_t(4 * k));
-        }
+        to.resize(large->value_count());
+        for (size_t y = 0; y < large->height; ++y)
+            for (size_t x = 0; x < large->width; ++x)
+                std::copy_n(from.begin() + ptrdiff_t(map.find_texel(x / times, y / times)), map.stride,
+                            to.begin() + ptrdiff_t(large->find_texel(x, y)));
     };
     repeat(map.floats, large->floats), repeat(map.halves, large->halves);
     return large;

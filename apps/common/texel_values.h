@@ -12,17 +12,19 @@ namespace relief {
 
 /// The first three channels of a texel inside of the map.
 inline Vec3f read_texel(const Texture& texture, uint32_t x, uint32_t y) {
-    const size_t at = 4 * (size_t(y) * texture.width + x);
-    if (texture.halves.empty()) return {texture.floats[at], texture.floats[at + 1], texture.floats[at + 2]};
-    return {half_to_float(texture.halves[at]), half_to_float(texture.halves[at + 1]),
-            half_to_float(texture.halves[at + 2])};
+    const size_t place = texture.find_texel(x, y);
+    float values[3] = {};
+    for (size_t c = 0; c < 3 && c < texture.stride; ++c)
+        values[c] =
+            texture.halves.empty() ? texture.floats[place + c] : half_to_float(texture.halves[place + c]);
+    return {values[0], values[1], values[2]};
 }
 
 /// Its inverse, rounded where the map holds halves. The value is finite.
 inline void write_texel(Texture& texture, uint32_t x, uint32_t y, const Vec3f& value) {
-    const size_t at = 4 * (size_t(y) * texture.width + x);
+    const size_t at = texture.find_texel(x, y);
     const float values[] = {value.x, value.y, value.z};
-    for (size_t c = 0; c < 3; ++c) {
+    for (size_t c = 0; c < 3 && c < texture.stride; ++c) {
         if (texture.halves.empty())
             texture.floats[at + c] = values[c];
         else

@@ -232,7 +232,8 @@ bool Document::replace_tile(size_t displacement, int udim, Texture texels) {
     const std::shared_ptr<const Texture> held =
         find_map_tile(scene_.displacements.at(displacement), udim).texture;
     if (texels.width != held->width || texels.height != held->height ||
-        texels.channel_count != held->channel_count || texels.halves.empty() != held->halves.empty())
+        texels.channel_count != held->channel_count || texels.stride != held->stride ||
+        texels.halves.empty() != held->halves.empty())
         return false;
     painted_.erase(held.get());
     uncommitted_.erase(held.get());

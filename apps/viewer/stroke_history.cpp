@@ -8,25 +8,16 @@ namespace relief::viewer {
 
 namespace {
 
+/// Texels of `box` from one place to another: of textures that hold the same kind of values.
 template <class Number>
-void copy_rows(const std::vector<Number>& from, uint32_t from_width, const TexelBox& box,
-               std::vector<Number>& to) {
-    if (from.empty()) return;
-    const size_t row = 4 * size_t(box.x1 - box.x0);
-    to.resize(row * size_t(box.y1 - box.y0));
-    for (int y = box.y0; y < box.y1; ++y)
-        std::copy_n(from.begin() + ptrdiff_t(4 * (size_t(y) * from_width + size_t(box.x0))), row,
-                    to.begin() + ptrdiff_t(row * size_t(y - box.y0)));
-}
-
-template <class Number>
-void paste_rows(const std::vector<Number>& from, const TexelBox& box, uint32_t to_width,
-                std::vector<Number>& to) {
-    if (from.empty()) return;
-    const size_t row = 4 * size_t(box.x1 - box.x0);
-    for (int y = box.y0; y < box.y1; ++y)
-        std::copy_n(from.begin() + ptrdiff_t(row * size_t(y - box.y0)), row,
-                    to.begin() + ptrdiff_t(4 * (size_t(y) * to_width + size_t(box.x0))));
+void copy_rows(const Texture& from, const std::vector<Number>& values, size_t from_x, size_t from_y,
+               const TexelBox& box, const Texture& to, std::vector<Number>& target, size_t to_x,
+               size_t to_y) {
+    if (values.empty()) return;
+    const size_t row = from.stride * size_t(box.x1 - box.x0);
+    for (size_t y = 0; y < size_t(box.y1 - box.y0); ++y)
+        std::copy_n(values.begin() + ptrdiff_t(from.find_texel(from_x, from_y + y)), row,
+                    target.begin() + ptrdiff_t(to.find_texel(to_x, to_y + y)));
 }
 
 } // namespace
@@ -35,16 +26,20 @@ Texture copy_texels(const Texture& from, const TexelBox& box) {
     Texture texels;
     texels.width = uint32_t(box.x1 - box.x0);
     texels.height = uint32_t(box.y1 - box.y0);
-    texels.channel_count = from.channel_count;
+    texels.channel_count = from.channel_count, texels.stride = from.stride;
     texels.source_type = from.source_type;
-    copy_rows(from.floats, from.width, box, texels.floats);
-    copy_rows(from.halves, from.width, box, texels.halves);
+    (from.halves.empty() ? texels.floats.resize(texels.value_count())
+                         : texels.halves.resize(texels.value_count()));
+    const auto x = size_t(box.x0), y = size_t(box.y0);
+    copy_rows(from, from.floats, x, y, box, texels, texels.floats, 0, 0);
+    copy_rows(from, from.halves, x, y, box, texels, texels.halves, 0, 0);
     return texels;
 }
 
 void paste_texels(const Texture& texels, const TexelBox& box, Texture& to) {
-    paste_rows(texels.floats, box, to.width, to.floats);
-    paste_rows(texels.halves, box, to.width, to.halves);
+    const auto x = size_t(box.x0), y = size_t(box.y0);
+    copy_rows(texels, texels.floats, 0, 0, box, to, to.floats, x, y);
+    copy_rows(texels, texels.halves, 0, 0, box, to, to.halves, x, y);
 }
 
 Displacement get_meaning(const Displacement& map) {

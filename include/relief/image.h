@@ -43,12 +43,20 @@ struct Texture {
     uint32_t width = 0, height = 0;
     uint32_t channel_count = 0;
     SampleType source_type = SampleType::float32;
-    std::vector<float> floats;    ///< 4 * width * height, or empty; integers are scaled to [0, 1]
-    std::vector<uint16_t> halves; ///< 4 * width * height IEEE 754 binary16 bits, or empty
+    /// Values a texel in `floats` and `halves`: 4, where channels that the file lacks are 0 and a missing
+    /// fourth is 1; or, of textures with 3 channels or 1, as many as there are channels.
+    uint32_t stride = 4;
+    std::vector<float> floats;    ///< value_count() of them, or empty; integers are scaled to [0, 1]
+    std::vector<uint16_t> halves; ///< likewise, IEEE 754 binary16 bits
     std::string file;             ///< for messages
     /// What in the file marks the values as colours ("sRGB chunk"), kRenderedTag: as a picture of Relief's
     /// own; empty: nothing.
     std::string colour_tag;
+    /// Values that all texels have, row by row, and 4 - stride more, so that four can be read from each texel
+    /// on.
+    size_t value_count() const { return size_t(stride) * width * height + (4 - stride); }
+    /// Where the values of the texel in column x and row y begin.
+    size_t find_texel(size_t x, size_t y) const { return stride * (y * width + x); }
     /// Bytes of texel data.
     size_t byte_count() const { return floats.size() * sizeof(float) + halves.size() * sizeof(uint16_t); }
 };

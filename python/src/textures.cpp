@@ -22,13 +22,16 @@ namespace {
 
 constexpr size_t kTexelGrain = 1 << 16; ///< texels
 
-/// Four channels a texel; missing ones are 0, a missing fourth is `one`.
+/// Channels that the array lacks are 0, a missing fourth is `one`, where the texture has them.
 template <class From, class To, class Convert>
-void spread(const From* from, size_t channels, To one, std::vector<To>& to, const Convert& convert) {
-    parallel_for("spread_texels", to.size() / 4, kTexelGrain, [&](size_t begin, size_t end) {
+void fill(const From* from, const Texture& texture, To one, std::vector<To>& to, const Convert& convert) {
+    to.resize(texture.value_count());
+    const size_t channels = texture.channel_count, stride = texture.stride;
+    const size_t count = size_t(texture.width) * texture.height;
+    parallel_for("fill_texels", count, kTexelGrain, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
-            for (size_t c = 0; c < 4; ++c)
-                to[4 * k + c] = c < channels ? convert(from[channels * k + c]) : (c == 3 ? one : To(0));
+            for (size_t c = 0; c < stride; ++c)
+                to[stride * k + c] = c < channels ? convert(from[channels * k + c]) : (c == 3 ? one : To(0));
         }
     });
 }
@@ -40,31 +43,27 @@ Texture make_texture(nb::handle array, const std::string& name) {
     Texture texture;
     texture.height = uint32_t(given.shape(0)), texture.width = uint32_t(given.shape(1));
     texture.channel_count = uint32_t(given.shape(2));
+    texture.stride = texture.channel_count == 1 || texture.channel_count == 3 ? texture.channel_count : 4;
     texture.file = name;
-    const size_t count = 4 * given.shape(0) * given.shape(1), channels = given.shape(2);
     constexpr uint16_t kHalfOne = 0x3c00;
     const nb::dlpack::dtype type = given.dtype();
     const void* const data = given.data();
     const GateVisit visit;
     const nb::gil_scoped_release release;
     if (type == nb::dtype<float>()) {
-        texture.floats.resize(count);
-        spread(static_cast<const float*>(data), channels, 1.0f, texture.floats, [](float x) { return x; });
+        fill(static_cast<const float*>(data), texture, 1.0f, texture.floats, [](float x) { return x; });
     } else if (type == nb::dtype<uint8_t>()) {
         texture.source_type = SampleType::uint8;
-        texture.floats.resize(count);
-        spread(static_cast<const uint8_t*>(data), channels, 1.0f, texture.floats,
-               [](uint8_t x) { return float(x) * (1.0f / 255); });
+        fill(static_cast<const uint8_t*>(data), texture, 1.0f, texture.floats,
+             [](uint8_t x) { return float(x) * (1.0f / 255); });
     } else if (type == nb::dtype<uint16_t>()) {
         texture.source_type = SampleType::uint16;
-        texture.floats.resize(count);
-        spread(static_cast<const uint16_t*>(data), channels, 1.0f, texture.floats,
-               [](uint16_t x) { return float(x) * (1.0f / 65535); });
+        fill(static_cast<const uint16_t*>(data), texture, 1.0f, texture.floats,
+             [](uint16_t x) { return float(x) * (1.0f / 65535); });
     } else {
         texture.source_type = SampleType::float16;
-        texture.halves.resize(count);
-        spread(static_cast<const uint16_t*>(data), channels, kHalfOne, texture.halves,
-               [](uint16_t x) { return x; });
+        fill(static_cast<const uint16_t*>(data), texture, kHalfOne, texture.halves,
+             [](uint16_t x) { return x; });
     }
     return texture;
 }
@@ -80,8 +79,8 @@ nb::object make_texel_array(const Texture& texture) {
             for (size_t k = begin; k < end; ++k)
                 for (size_t c = 0; c < channels; ++c)
                     values[channels * k + c] = texture.floats.empty()
-                                                   ? half_to_float(texture.halves[4 * k + c])
-                                                   : texture.floats[4 * k + c];
+                                                   ? half_to_float(texture.halves[texture.stride * k + c])
+                                                   : texture.floats[texture.stride * k + c];
         });
     }
     return make_array<float>(std::move(values), {texture.height, texture.width, channels});

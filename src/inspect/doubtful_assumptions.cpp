@@ -11,6 +11,7 @@
 #include "analysis/map_convention.h"
 #include "analysis/map_statistics.h"
 #include "analysis/mesh_statistics.h"
+#include "image/texel_layout.h"
 #include "inspect/facts.h"
 #include "inspect/map_mistakes.h"
 #include "relief/convert.h"
@@ -36,18 +37,13 @@ uint64_t count_texels(const Displacement& map) {
 std::shared_ptr<const Texture> thin_out(const Texture& texture, uint32_t step) {
     auto result = std::make_shared<Texture>();
     result->width = std::max(1u, texture.width / step), result->height = std::max(1u, texture.height / step);
-    result->channel_count = texture.channel_count;
-    result->source_type = texture.source_type;
     result->file = texture.file, result->colour_tag = texture.colour_tag;
+    make_values_like(texture, *result);
     for (uint32_t y = 0; y < result->height; ++y)
         for (uint32_t x = 0; x < result->width; ++x) {
-            const size_t at = 4 * ((size_t(y) * step + step / 2) % texture.height * texture.width +
-                                   (size_t(x) * step + step / 2) % texture.width);
-            const auto copy = [at](const auto& from, auto& to) {
-                if (!from.empty())
-                    to.insert(to.end(), from.begin() + ptrdiff_t(at), from.begin() + ptrdiff_t(at) + 4);
-            };
-            copy(texture.floats, result->floats), copy(texture.halves, result->halves);
+            const size_t from = texture.find_texel((size_t(x) * step + step / 2) % texture.width,
+                                                   (size_t(y) * step + step / 2) % texture.height);
+            copy_values(texture, from, *result, result->find_texel(x, y), texture.stride);
         }
     return result;
 }

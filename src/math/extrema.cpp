@@ -14,56 +14,51 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t kChannels = 4;
 constexpr size_t kMostLanes = 16;
 
-/// Calls extend(values) for vectors of D that cover every row by whole texels; the last two may overlap.
-template <class D, class Value, class Extend>
-HWY_INLINE void visit_registers(D d, const TexelRows<Value>& texels, Extend extend) {
-    const size_t count = kChannels * texels.columns, lanes = hn::Lanes(d);
+/// Texels that fill vectors of D, one after another: the channel of each of their lanes is always the same.
+template <class D, size_t channels> struct Vectors {
+    static constexpr size_t kCount = channels == 3 ? 3 : 1;
+    static constexpr size_t kLanes = hn::MaxLanes(D());
+    static constexpr size_t kValues = kCount * kLanes;
+    static_assert(kValues % channels == 0);
+};
+
+/// Calls extend(values) for values of whole vectors that cover every row; the last two may overlap.
+template <size_t value_count, class Value, class Extend>
+HWY_INLINE void visit_values(const TexelRows<Value>& texels, Extend extend) {
+    const size_t count = texels.channels * texels.columns;
     for (size_t y = 0; y < texels.rows; ++y) {
         const Value* row = texels.first + y * texels.stride;
         size_t k = 0;
-        for (; k + lanes <= count; k += lanes) extend(row + k);
-        if (k < count) extend(row + count - lanes);
+        for (; k + value_count <= count; k += value_count) extend(row + k);
+        if (k < count) extend(row + count - value_count);
     }
-}
-
-/// Reduces lanes to one of each channel.
-template <class D, class V, class Reduce>
-HWY_INLINE void join_lanes(D d, V values, Reduce reduce, hn::TFromD<D> (&joined)[kChannels]) {
-    if constexpr (hn::MaxLanes(D()) > kChannels) {
-        const hn::Half<D> half;
-        join_lanes(half, reduce(hn::LowerHalf(half, values), hn::UpperHalf(half, values)), reduce, joined);
-    } else {
-        hn::StoreU(values, d, joined);
-    }
-}
-
-template <class D, class V, class T = hn::TFromD<D>>
-HWY_INLINE void join_lanes(D d, V low, V high, T (&least)[kChannels], T (&greatest)[kChannels]) {
-    join_lanes(
-        d, low, [](auto a, auto b) HWY_ATTR { return hn::Min(a, b); }, least);
-    join_lanes(
-        d, high, [](auto a, auto b) HWY_ATTR { return hn::Max(a, b); }, greatest);
 }
 
 /// Maps the bits of halves to integers in the same order; an involution.
 constexpr int16_t make_key(uint16_t half) { return int16_t(half ^ ((half & 0x8000u) != 0 ? 0x7fffu : 0u)); }
 
-template <class D> Extrema join_halves(D d, const TexelRows<uint16_t>& texels) {
+template <size_t channels, class D> Extrema join_halves(D d, const TexelRows<uint16_t>& texels) {
+    using V = Vectors<D, channels>;
     constexpr int16_t kInfinity = make_key(0x7c00), kMinusInfinity = make_key(0xfc00);
-    auto low = hn::Set(d, make_key(0x7fff)), high = hn::Set(d, make_key(0xffff));
-    visit_registers(d, texels, [&](const uint16_t* values) {
-        const auto half = hn::BitCast(d, hn::LoadU(hn::RebindToUnsigned<D>(), values));
-        const auto key = hn::Xor(half, hn::And(hn::ShiftRight<15>(half), hn::Set(d, int16_t(0x7fff))));
-        low = hn::Min(low, key), high = hn::Max(high, key);
+    hn::Vec<D> low[V::kCount], high[V::kCount];
+    for (size_t k = 0; k < V::kCount; ++k)
+        low[k] = hn::Set(d, make_key(0x7fff)), high[k] = hn::Set(d, make_key(0xffff));
+    visit_values<V::kValues>(texels, [&](const uint16_t* values) HWY_ATTR {
+        for (size_t k = 0; k < V::kCount; ++k) {
+            const auto half = hn::BitCast(d, hn::LoadU(hn::RebindToUnsigned<D>(), values + k * V::kLanes));
+            const auto key = hn::Xor(half, hn::And(hn::ShiftRight<15>(half), hn::Set(d, int16_t(0x7fff))));
+            low[k] = hn::Min(low[k], key), high[k] = hn::Max(high[k], key);
+        }
     });
-    int16_t least[kChannels], greatest[kChannels];
-    join_lanes(d, low, high, least, greatest);
-    Extrema result;
-    result.is_finite = true;
-    for (size_t c = 0; c < 3; ++c) {
+    int16_t least[V::kValues], greatest[V::kValues];
+    for (size_t k = 0; k < V::kCount; ++k)
+        hn::StoreU(low[k], d, least + k * V::kLanes), hn::StoreU(high[k], d, greatest + k * V::kLanes);
+    Extrema result{{}, {}, true};
+    for (size_t c = 0; c < std::min<size_t>(channels, 3); ++c) {
+        for (size_t k = c + channels; k < V::kValues; k += channels)
+            least[c] = std::min(least[c], least[k]), greatest[c] = std::max(greatest[c], greatest[k]);
         result.is_finite &= least[c] > kMinusInfinity && greatest[c] < kInfinity;
         result.low[c] = half_to_float(uint16_t(make_key(uint16_t(least[c]))));
         result.high[c] = half_to_float(uint16_t(make_key(uint16_t(greatest[c]))));
@@ -71,38 +66,58 @@ template <class D> Extrema join_halves(D d, const TexelRows<uint16_t>& texels) {
     return result;
 }
 
-template <class D> Extrema join_floats(D d, const TexelRows<float>& texels) {
-    auto low = hn::LoadU(d, texels.first), high = low;
-    auto doubt = hn::Zero(d); // NaN after a NaN or infinity
-    visit_registers(d, texels, [&](const float* values) {
-        const auto value = hn::LoadU(d, values);
-        low = hn::Min(low, value), high = hn::Max(high, value);
-        doubt = hn::Add(doubt, hn::Sub(value, value));
+template <size_t channels, class D> Extrema join_floats(D d, const TexelRows<float>& texels) {
+    using V = Vectors<D, channels>;
+    hn::Vec<D> low[V::kCount], high[V::kCount], doubt[V::kCount]; // NaN after a NaN or infinity
+    for (size_t k = 0; k < V::kCount; ++k)
+        low[k] = high[k] = hn::LoadU(d, texels.first + k * V::kLanes), doubt[k] = hn::Zero(d);
+    visit_values<V::kValues>(texels, [&](const float* values) HWY_ATTR {
+        for (size_t k = 0; k < V::kCount; ++k) {
+            const auto value = hn::LoadU(d, values + k * V::kLanes);
+            low[k] = hn::Min(low[k], value), high[k] = hn::Max(high[k], value);
+            doubt[k] = hn::Add(doubt[k], hn::Sub(value, value));
+        }
     });
-    float least[kChannels], greatest[kChannels];
-    join_lanes(d, low, high, least, greatest);
-    alignas(64) float doubts[kMostLanes];
-    hn::Store(doubt, d, doubts);
-    Extrema result;
-    result.is_finite = true;
-    for (size_t k = 0; k < hn::Lanes(d); ++k) result.is_finite &= k % kChannels == 3 || doubts[k] == 0;
-    std::copy(least, least + 3, result.low.begin()), std::copy(greatest, greatest + 3, result.high.begin());
+    float least[V::kValues], greatest[V::kValues], doubts[V::kValues];
+    for (size_t k = 0; k < V::kCount; ++k) {
+        hn::StoreU(low[k], d, least + k * V::kLanes), hn::StoreU(high[k], d, greatest + k * V::kLanes);
+        hn::StoreU(doubt[k], d, doubts + k * V::kLanes);
+    }
+    Extrema result{{}, {}, true};
+    for (size_t c = 0; c < std::min<size_t>(channels, 3); ++c)
+        for (size_t k = c; k < V::kValues; k += channels) {
+            result.is_finite &= doubts[k] == 0;
+            result.low[c] = k == c ? least[k] : std::min(result.low[c], least[k]);
+            result.high[c] = k == c ? greatest[k] : std::max(result.high[c], greatest[k]);
+        }
     return result;
 }
 
-Extrema find_half_extrema(const TexelRows<uint16_t>& texels) {
-    const hn::CappedTag<int16_t, kMostLanes> wide;
-    return kChannels * texels.columns >= hn::Lanes(wide)
-               ? join_halves(wide, texels)
-               : join_halves(hn::CappedTag<int16_t, kChannels>(), texels);
+template <size_t channels, class D> Extrema join_vectors(D d, const TexelRows<uint16_t>& texels) {
+    return join_halves<channels>(d, texels);
+}
+template <size_t channels, class D> Extrema join_vectors(D d, const TexelRows<float>& texels) {
+    return join_floats<channels>(d, texels);
 }
 
-Extrema find_float_extrema(const TexelRows<float>& texels) {
-    const hn::CappedTag<float, kMostLanes> wide;
-    return kChannels * texels.columns >= hn::Lanes(wide)
-               ? join_floats(wide, texels)
-               : join_floats(hn::CappedTag<float, kChannels>(), texels);
+/// By the widest vectors that rows can fill.
+template <size_t channels, class Lane, size_t lanes, class Value>
+Extrema join_rows(const TexelRows<Value>& texels) {
+    const hn::CappedTag<Lane, lanes> d;
+    if constexpr (channels == 4 ? lanes > 4 : lanes > 1)
+        if (channels * texels.columns < Vectors<decltype(d), channels>::kValues)
+            return join_rows<channels, Lane, lanes / 2>(texels);
+    return join_vectors<channels>(d, texels);
 }
+
+template <class Lane, class Value> Extrema join_texels(const TexelRows<Value>& texels) {
+    if (texels.channels == 4) return join_rows<4, Lane, kMostLanes>(texels);
+    return texels.channels == 3 ? join_rows<3, Lane, kMostLanes>(texels)
+                                : join_rows<1, Lane, kMostLanes>(texels);
+}
+
+Extrema find_half_extrema(const TexelRows<uint16_t>& texels) { return join_texels<int16_t>(texels); }
+Extrema find_float_extrema(const TexelRows<float>& texels) { return join_texels<float>(texels); }
 
 } // namespace relief::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -7,13 +7,13 @@
 
 namespace relief {
 
-/// columns x rows texels of four channels; rows are `stride` values apart.
+/// columns x rows texels of `channels` values, which are 4, 3 or 1; rows are `stride` values apart.
 template <class Value> struct TexelRows {
     const Value* first;
-    size_t stride, columns, rows; ///< columns and rows are > 0
+    size_t channels, stride, columns, rows; ///< columns and rows are > 0
 };
 
-/// Of the first three channels.
+/// Of the first three channels; those that texels do not have are 0.
 struct Extrema {
     std::array<float, 3> low, high;
     bool is_finite; ///< false: a value is NaN or infinite, and the results are invalid

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/content_hash.h"
+#include "image/texel_layout.h"
 #include "prepare/camera_enclosure.h"
 #include "prepare/editable_scene.h"
 #include "prepare/local_origins.h"
@@ -31,10 +32,9 @@ namespace {
 
 void check_rectangle(const MapEdit& edit, const Texture& map) {
     const Texture& texels = edit.texels;
-    const size_t count = size_t(4) * texels.width * texels.height;
-    if (count == 0 || texels.floats.size() + texels.halves.size() != count)
+    if (!is_complete(texels))
         refuse(edit, "the rectangle holds no texels, or not as many as its size says",
-               "give 4 x width x height values");
+               "give stride x width x height values, and 4 - stride more");
     if (uint64_t(edit.x) + texels.width > map.width || uint64_t(edit.y) + texels.height > map.height)
         refuse(edit,
                fmt::format("{} x {} texels at ({}, {}) leave the map of {} x {}", texels.width, texels.height,

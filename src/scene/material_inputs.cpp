@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "relief/half.h"
+#include "image/texel_layout.h"
 
 namespace relief {
 
@@ -58,9 +58,9 @@ FactorRange find_factors(const InputTexture& texture) {
         range.lower = std::min(range.lower, value), range.upper = std::max(range.upper, value);
     };
     for (const MapTile& tile : texture.tiles) {
-        for (size_t i = 0; i < tile.texture->floats.size(); i += 4) add(tile.texture->floats[i]);
-        for (size_t i = 0; i < tile.texture->halves.size(); i += 4)
-            add(half_to_float(tile.texture->halves[i]));
+        const Texture& texels = *tile.texture;
+        for (size_t k = 0; k < size_t(texels.width) * texels.height; ++k)
+            add(load_value(texels, k * texels.stride));
     }
     if (texture.is_udim) add(1); // where there is no tile
     if (texture.wrap == WrapMode::black) add(0);

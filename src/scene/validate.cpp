@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "image/texel_layout.h"
 #include "math/affine.h"
 #include "math/box.h"
 #include "relief/error.h"
@@ -166,13 +167,11 @@ namespace {
 
 void check_texture(const std::string& where, const Texture& texture) {
     constexpr uint32_t kMaxSide = kMaxPictureSize;
-    const size_t samples = 4 * size_t(texture.width) * texture.height;
-    if (samples == 0 || texture.width > kMaxSide || texture.height > kMaxSide)
+    if (texture.width == 0 || texture.height == 0 || texture.width > kMaxSide || texture.height > kMaxSide)
         fail(where, fmt::format("texture of {} x {} texels", texture.width, texture.height),
              fmt::format("each side must be in [1, {}]", kMaxSide));
-    const bool has_floats = texture.floats.size() == samples && texture.halves.empty();
-    const bool has_halves = texture.halves.size() == samples && texture.floats.empty();
-    if (!has_floats && !has_halves) fail(where, "texture holds another number of texels than its size says");
+    if (!is_complete(texture))
+        fail(where, "texture holds another number of texels than its size and its stride say");
 }
 
 void check_frame(const std::string& where, const Displacement& map) {

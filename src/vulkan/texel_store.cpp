@@ -1,5 +1,6 @@
 #include "vulkan/texel_store.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,8 @@ namespace relief::vulkan {
 
 namespace {
 
+constexpr uint16_t kHalfOne = 0x3c00;
+
 Buffer make_texel_buffer(const Device& device, const char* name, TexelFormat format, uint64_t texels) {
     if (texels > device.max_texel_count())
         throw Error(
@@ -19,6 +22,27 @@ Buffer make_texel_buffer(const Device& device, const char* name, TexelFormat for
                          texels, texels * texel_bytes(format), device.max_texel_count()),
              device.description().name, "use smaller maps, or device.engine = cpu"});
     return {device, {name, texels * texel_bytes(format), Purpose::displacement, format}};
+}
+
+/// Buffers have four values a texel, whatever textures have.
+template <class Value>
+void upload_texels(const Texture& texture, const std::vector<Value>& values, Value one, uint64_t first,
+                   Buffer& buffer) {
+    constexpr size_t kPartTexels = size_t(1) << 18;
+    if (texture.stride == 4) return buffer.upload(values, first * 4 * sizeof(Value));
+    const size_t count = size_t(texture.width) * texture.height;
+    std::vector<Value> part;
+    for (size_t begin = 0; begin < count; begin += kPartTexels) {
+        const size_t end = std::min(count, begin + kPartTexels);
+        part.clear();
+        for (size_t k = begin; k < end; ++k) {
+            const Value* texel = &values[texture.stride * k];
+            const bool has_three = texture.stride == 3;
+            part.insert(part.end(),
+                        {texel[0], has_three ? texel[1] : Value(0), has_three ? texel[2] : Value(0), one});
+        }
+        buffer.upload(part, (first + begin) * 4 * sizeof(Value));
+    }
 }
 
 } // namespace
@@ -37,14 +61,16 @@ scalar::TextureData TexelStore::add(std::shared_ptr<const Texture> texture) {
 Buffer TexelStore::make_float_buffer(const Device& device) const {
     Buffer buffer = make_texel_buffer(device, "texels of 32 bits", TexelFormat::rgba32_float, float_count_);
     for (size_t k = 0; k < textures_.size(); ++k)
-        if (!places_[k].is_half) buffer.upload(textures_[k]->floats, uint64_t(places_[k].first_texel) * 16);
+        if (!places_[k].is_half)
+            upload_texels(*textures_[k], textures_[k]->floats, 1.0f, places_[k].first_texel, buffer);
     return buffer;
 }
 
 Buffer TexelStore::make_half_buffer(const Device& device) const {
     Buffer buffer = make_texel_buffer(device, "texels of 16 bits", TexelFormat::rgba16_float, half_count_);
     for (size_t k = 0; k < textures_.size(); ++k)
-        if (places_[k].is_half) buffer.upload(textures_[k]->halves, uint64_t(places_[k].first_texel) * 8);
+        if (places_[k].is_half)
+            upload_texels(*textures_[k], textures_[k]->halves, kHalfOne, places_[k].first_texel, buffer);
     return buffer;
 }
 

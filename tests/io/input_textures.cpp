@@ -32,7 +32,9 @@ class InputTextures : public SceneFiles {
 std::vector<float> find_first_channel(const InputTexture& texture) {
     std::vector<float> values;
     for (const MapTile& tile : texture.tiles)
-        for (size_t i = 0; i < tile.texture->floats.size(); i += 4) values.push_back(tile.texture->floats[i]);
+        for (uint32_t y = 0; y < tile.texture->height; ++y)
+            for (uint32_t x = 0; x < tile.texture->width; ++x)
+                values.push_back(tile.texture->floats.at(tile.texture->find_texel(x, y)));
     return values;
 }
 

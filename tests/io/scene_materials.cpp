@@ -85,7 +85,7 @@ TEST_F(SceneFiles, normal_maps_are_read_as_they_are) {
     const Scene scene = parse(with_material(R"("normal_texture": {"file": "normal.png", "filter": "cubic",
                                                                   "scale": 2, "flip_y": true})"));
     const Material& material = scene.materials.at(0);
-    EXPECT_EQ(material.normal_texture->floats, (std::vector<float>{1, 128 / 255.f, 0, 1}));
+    EXPECT_EQ(material.normal_texture->floats, (std::vector<float>{1, 128 / 255.f, 0, 0}));
     EXPECT_EQ(material.normal_filter, MapFilter::cubic);
     EXPECT_EQ(material.normal_scale, 2);
     EXPECT_TRUE(material.normal_flip_y);

@@ -51,7 +51,7 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_EQ(scene.picture.width, 64);
     EXPECT_EQ(scene.camera.focus_distance, 4);
     EXPECT_EQ(scene.camera.shift, (Vec2f{0.25f, -1}));
-    EXPECT_EQ(scene.environment->texture->floats.at(4), 4);
+    EXPECT_EQ(scene.environment->texture->floats.at(3), 4);
     EXPECT_EQ(scene.materials.at(0).ior, 1.3f);
     EXPECT_NEAR(scene.materials[0].base_color_texture->floats.at(1), 0.2158605f, 1e-6f);
     EXPECT_EQ(scene.materials[0].roughness_texture->floats.at(1), 128 / 255.f);

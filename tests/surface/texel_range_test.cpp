@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "support/strides.h"
 #include "support/targets.h"
 #include "surface/map/texels.h"
 
@@ -48,17 +49,20 @@ ChannelRange find_one_by_one(const Texture& texture, const TexelRectangle& recta
 void expect_ranges_of_texels() {
     std::mt19937 random(4);
     for (const Coding coding : {Coding::floats, Coding::halves}) {
-        const Texture texture = make_noise(coding);
-        for (int k = 0; k < 2000; ++k) {
-            const uint32_t x0 = random() % kWidth, y0 = random() % kHeight;
-            const TexelRectangle rectangle{x0, y0, x0 + uint32_t(random()) % (kWidth - x0),
-                                           y0 + uint32_t(random()) % (kHeight - y0)};
-            const std::optional<ChannelRange> found = find_texel_range(texture, rectangle);
-            const ChannelRange expected = find_one_by_one(texture, rectangle);
-            ASSERT_TRUE(found);
-            for (size_t c = 0; c < 3; ++c) {
-                EXPECT_EQ(found->low[c], expected.low[c]) << k;
-                EXPECT_EQ(found->high[c], expected.high[c]) << k;
+        for (const uint32_t stride : {4u, 3u, 1u}) {
+            const Texture noise = make_noise(coding),
+                          texture = stride == 4 ? noise : test::make_narrow(noise, stride);
+            for (int k = 0; k < 2000; ++k) {
+                const uint32_t x0 = random() % kWidth, y0 = random() % kHeight;
+                const TexelRectangle rectangle{x0, y0, x0 + uint32_t(random()) % (kWidth - x0),
+                                               y0 + uint32_t(random()) % (kHeight - y0)};
+                const std::optional<ChannelRange> found = find_texel_range(texture, rectangle);
+                const ChannelRange expected = find_one_by_one(texture, rectangle);
+                ASSERT_TRUE(found);
+                for (size_t c = 0; c < 3; ++c) {
+                    EXPECT_EQ(found->low[c], expected.low[c]) << k;
+                    EXPECT_EQ(found->high[c], expected.high[c]) << k;
+                }
             }
         }
     }
@@ -74,6 +78,10 @@ void expect_nothing_where_a_channel_is_not_finite() {
                 floats.floats[4 * texel + channel] = half_to_float(bits);
                 EXPECT_EQ(find_texel_range(halves, all).has_value(), channel == 3) << bits << " at " << texel;
                 EXPECT_EQ(find_texel_range(floats, all).has_value(), channel == 3) << bits << " at " << texel;
+                for (const uint32_t stride : {3u, 1u})
+                    for (const Texture* wide : {&halves, &floats})
+                        EXPECT_EQ(find_texel_range(test::make_narrow(*wide, stride), all).has_value(),
+                                  channel >= stride);
             }
 }
 

@@ -1,4 +1,5 @@
 // Inputs of materials with textures: both engines agree within their noise.
+#include "support/strides.h"
 #include "support/textured_materials.h"
 #include "support/z_test.h"
 #include "vulkan/both_engines.h"
@@ -36,6 +37,18 @@ TEST_F(TexturedPictures, of_layers_agree) {
     material.textures[4].is_udim = true, material.textures[4].uv_scale = {2, 2};
     material.textures[4].tiles.push_back({1012, make_grey_texture({0.7f, 0.1f})});
     expect_agreement(make_scene(material), 8);
+}
+
+TEST_F(TexturedPictures, do_not_depend_on_how_many_values_a_texel_has) {
+    const RenderSettings settings = make_small_settings(16, 2, 2);
+    for (const uint32_t channels : {1u, 3u})
+        for (const SampleType type : {SampleType::float16, SampleType::float32}) {
+            const Scene wide = test::make_textured_torus(channels, type, MapFilter::none);
+            const auto trace = [&](const Scene& scene) {
+                return trace_picture(device(), *prepare_scene(scene, settings), settings).pixels;
+            };
+            EXPECT_TRUE(trace(test::make_narrow(wide)) == trace(wide)) << channels;
+        }
 }
 
 TEST_F(TexturedPictures, of_glass_walls_agree) {

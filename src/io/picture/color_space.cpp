@@ -29,9 +29,14 @@ template <class Convert> void convert_texels(Texture& texture, const Convert& co
         std::ranges::transform(texture.halves, texture.floats.begin(), half_to_float);
         texture.halves = {};
     }
-    parallel_for("color_space", texture.floats.size() / 4, 65536, [&](size_t begin, size_t end) {
+    const size_t count = size_t(texture.width) * texture.height;
+    parallel_for("color_space", count, 65536, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
-            float* texel = &texture.floats[4 * k];
+            float* texel = &texture.floats[texture.stride * k];
+            if (texture.stride == 1) { // grey
+                texel[0] = convert(Vec3f{texel[0], texel[0], texel[0]}).x;
+                continue;
+            }
             const Vec3f color = convert(Vec3f{texel[0], texel[1], texel[2]});
             texel[0] = color.x, texel[1] = color.y, texel[2] = color.z;
         }

@@ -92,7 +92,7 @@ void encode_exr(const Texture& texture, CheckedFile& file) {
     const bool is_half = !texture.halves.empty();
     const void* values = is_half ? static_cast<const void*>(texture.halves.data()) : texture.floats.data();
     write_samples(Imf::Header(int(texture.width), int(texture.height)), channels,
-                  {is_half ? Imf::HALF : Imf::FLOAT, values, 4}, file);
+                  {is_half ? Imf::HALF : Imf::FLOAT, values, texture.stride}, file);
 }
 
 } // namespace relief

@@ -4,6 +4,7 @@
 #include <new>
 #include <sstream>
 
+#include "image/texel_layout.h"
 #include "io/picture/color_space.h"
 #include "io/picture/image_input.h"
 #include "relief/error.h"
@@ -15,25 +16,27 @@ namespace {
 
 constexpr uint16_t kHalfOne = 0x3c00;
 
-/// Room for four channels a pixel: those that the file lacks are 0, a missing fourth is 1.
-template <class T> std::vector<T> make_texels(const PixelHeader& header, T one) {
-    std::vector<T> texels(4 * size_t(header.width) * size_t(header.height), T(0));
-    for (size_t i = 3; i < texels.size(); i += 4) texels[i] = one;
+/// Room for all texels: channels that the file lacks are 0, a missing fourth is 1.
+template <class T> std::vector<T> make_texels(const Texture& texture, T one) {
+    std::vector<T> texels(texture.value_count(), T(0));
+    for (size_t i = 3; texture.stride == 4 && i < texels.size(); i += 4) texels[i] = one;
     return texels;
 }
 
 /// A data window smaller than the display window is put into its place; what the file leaves out is 0.
-template <class T> void place_in_display_window(const PixelHeader& header, std::vector<T>& texels) {
+template <class T>
+void place_in_display_window(const PixelHeader& header, const Texture& texture, std::vector<T>& texels) {
     if (texels.empty()) return;
-    std::vector<T> placed(4 * size_t(header.full_width) * header.full_height, T(0));
+    const size_t stride = texture.stride;
+    std::vector<T> placed(texture.value_count(), T(0));
     for (int y = 0; y < header.height; ++y) {
         const int row = header.y + y - header.full_y;
         if (row < 0 || row >= header.full_height) continue;
         for (int x = 0; x < header.width; ++x) {
             const int column = header.x + x - header.full_x;
             if (column < 0 || column >= header.full_width) continue;
-            const auto* source = &texels[4 * (size_t(y) * header.width + x)];
-            std::copy(source, source + 4, &placed[4 * (size_t(row) * header.full_width + column)]);
+            const auto* source = &texels[stride * (size_t(y) * header.width + x)];
+            std::copy(source, source + stride, &placed[texture.find_texel(size_t(column), size_t(row))]);
         }
     }
     texels = std::move(placed);
@@ -47,21 +50,22 @@ Texture read_pixels(PixelSource& source, const std::string& name) {
     texture.width = uint32_t(header.width);
     texture.height = uint32_t(header.height);
     texture.channel_count = uint32_t(channel_count);
+    texture.stride = choose_stride(header.channels.size());
     texture.source_type = header.type;
     if (texture.source_type == SampleType::float16) {
-        texture.halves = make_texels(header, kHalfOne);
-        source.read_halves(channel_count, 4, texture.halves.data());
+        texture.halves = make_texels(texture, kHalfOne);
+        source.read_halves(channel_count, texture.stride, texture.halves.data());
     } else {
-        texture.floats = make_texels(header, 1.0f);
-        source.read_floats(channel_count, 4, texture.floats.data());
+        texture.floats = make_texels(texture, 1.0f);
+        source.read_floats(channel_count, texture.stride, texture.floats.data());
     }
     const bool is_whole = header.x == header.full_x && header.y == header.full_y &&
                           header.width == header.full_width && header.height == header.full_height;
     if (!is_whole && has_near_display(header)) {
-        place_in_display_window(header, texture.floats);
-        place_in_display_window(header, texture.halves);
         texture.width = uint32_t(header.full_width);
         texture.height = uint32_t(header.full_height);
+        place_in_display_window(header, texture, texture.floats);
+        place_in_display_window(header, texture, texture.halves);
     }
     return texture;
 }

@@ -7,6 +7,7 @@
 
 #include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
+#include "image/texel_layout.h"
 #include "io/picture/color_space.h"
 #include "io/scene/tile_names.h"
 #include "relief/error.h"
@@ -21,22 +22,29 @@ namespace {
 
 bool is_finite_half(uint16_t bits) { return (bits & 0x7c00) != 0x7c00; }
 
+/// `visit` gets the places where texels begin.
+template <class Visit> void visit_texels(const Texture& texture, const Visit& visit) {
+    const size_t count = size_t(texture.width) * texture.height;
+    for (size_t k = 0; k < count; ++k) visit(k * texture.stride);
+}
+
 void decode_colors(Texture& texture) {
     const bool is_integer =
         texture.source_type == SampleType::uint8 || texture.source_type == SampleType::uint16;
     if (!is_integer) return;
     const bool is_grey = texture.channel_count < 3;
-    for (size_t i = 0; i < texture.floats.size(); i += 4) {
+    visit_texels(texture, [&](size_t place) {
         for (size_t c = 0; c < (is_grey ? 1 : 3); ++c)
-            texture.floats[i + c] = scalar::decode_srgb(texture.floats[i + c]);
-    }
+            texture.floats[place + c] = scalar::decode_srgb(texture.floats[place + c]);
+    });
 }
 
 /// A picture with one channel is grey: it counts for red, green and blue.
 void spread_grey(Texture& texture) {
-    if (texture.channel_count >= 3) return;
-    const auto spread = [](auto& texels) {
-        for (size_t i = 0; i < texels.size(); i += 4) texels[i + 1] = texels[i + 2] = texels[i];
+    if (texture.channel_count >= 3 || texture.stride == 1) return;
+    const auto spread = [&](auto& values) {
+        if (values.empty()) return;
+        visit_texels(texture, [&](size_t k) { values[k + 1] = values[k + 2] = values[k]; });
     };
     spread(texture.floats), spread(texture.halves);
 }
@@ -46,8 +54,9 @@ void move_first(Texture& texture, uint32_t channel) {
         throw Error(ErrorKind::bad_input,
                     {fmt::format("no channel {}: there are {}", "rgba"[channel], texture.channel_count),
                      texture.file, "name another channel"});
-    const auto move = [channel](auto& texels) {
-        for (size_t i = 0; i < texels.size(); i += 4) std::swap(texels[i], texels[i + channel]);
+    const auto move = [&](auto& values) {
+        if (!values.empty())
+            visit_texels(texture, [&](size_t k) { std::swap(values[k], values[k + channel]); });
     };
     move(texture.floats), move(texture.halves);
 }
@@ -57,41 +66,54 @@ float find_luminance(const Texture& texture, size_t texel) {
     return scalar::luminance({texture.floats[texel], texture.floats[texel + 1], texture.floats[texel + 2]});
 }
 
+/// The first channel alone is left.
+void keep_first(Texture& texture) {
+    const auto keep = [&](auto& values) {
+        if (values.empty()) return;
+        size_t next = 0;
+        visit_texels(texture, [&](size_t k) { values[next++] = values[k]; });
+        values.resize(next + 3);
+        values.shrink_to_fit();
+    };
+    keep(texture.floats), keep(texture.halves);
+    texture.channel_count = texture.stride = 1;
+}
+
 /// One channel is left, which counts for red, green and blue.
 void pick_channel(Texture& texture, uint32_t channel) {
     if (channel == kLuminanceChannel) {
         for (const uint16_t bits : texture.halves) texture.floats.push_back(half_to_float(bits));
         texture.halves.clear();
-        for (size_t i = 0; i < texture.floats.size(); i += 4) texture.floats[i] = find_luminance(texture, i);
+        visit_texels(texture, [&](size_t k) { texture.floats[k] = find_luminance(texture, k); });
     } else if (channel > 0) {
         move_first(texture, channel);
     }
-    texture.channel_count = 1;
-    spread_grey(texture);
+    keep_first(texture);
 }
 
 bool lift_negatives(Texture& texture) {
     bool has_lifted = false;
+    const uint32_t stride = texture.stride; // a fourth channel is no radiance
     for (size_t i = 0; i < texture.floats.size(); ++i)
-        if (i % 4 != 3 && texture.floats[i] < 0) texture.floats[i] = 0, has_lifted = true;
+        if (i % stride != 3 && texture.floats[i] < 0) texture.floats[i] = 0, has_lifted = true;
     for (size_t i = 0; i < texture.halves.size(); ++i)
-        if (i % 4 != 3 && texture.halves[i] > 0x8000) texture.halves[i] = 0, has_lifted = true;
+        if (i % stride != 3 && texture.halves[i] > 0x8000) texture.halves[i] = 0, has_lifted = true;
     return has_lifted;
 }
 
 } // namespace
 
 float get_texel(const Texture& texture, uint32_t x, uint32_t y, uint32_t channel) {
-    const size_t i = 4 * (size_t(y) * texture.width + x) + channel;
-    return texture.floats.empty() ? half_to_float(texture.halves[i]) : texture.floats[i];
+    return load_channel(texture, texture.find_texel(x, y), channel);
 }
 
 void check_finite(const Texture& texture, int udim) {
     const size_t count = size_t(texture.width) * texture.height;
     for (size_t i = 0; i < count; ++i) {
-        for (size_t c = 0; c < 3; ++c) {
-            const bool is_bad = texture.floats.empty() ? !is_finite_half(texture.halves[4 * i + c])
-                                                       : !std::isfinite(texture.floats[4 * i + c]);
+        for (size_t c = 0; c < std::min(3u, texture.stride); ++c) {
+            const size_t place = texture.stride * i + c;
+            const bool is_bad = texture.floats.empty() ? !is_finite_half(texture.halves[place])
+                                                       : !std::isfinite(texture.floats[place]);
             if (!is_bad) continue;
             const auto x = uint32_t(i % texture.width), y = uint32_t(i / texture.width);
             const std::string tile = udim > 0 ? fmt::format(", tile {}", udim) : std::string();

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "image/texel_layout.h"
 #include "math/vec.h"
 #include "relief/error.h"
-#include "relief/half.h"
 
 namespace relief {
 
@@ -31,7 +31,7 @@ void check_alike(const Texture& a, const Texture& b) {
     if (a.width != b.width || a.height != b.height)
         refuse(a.file, b.file,
                fmt::format("{} x {} and {} x {} pixels", a.width, a.height, b.width, b.height), kHint);
-    if (a.channel_count != b.channel_count)
+    if (a.channel_count != b.channel_count || a.stride != b.stride)
         refuse(a.file, b.file, fmt::format("{} and {} channels", a.channel_count, b.channel_count), kHint);
     if (a.source_type != b.source_type && !(is_floating(a) && is_floating(b)))
         refuse(a.file, b.file, "samples of two kinds", kHint);
@@ -41,10 +41,6 @@ float blend(float a, float b, float weight) { return (1 - weight) * a + weight *
 Vec2f blend(const Vec2f& a, const Vec2f& b, float w) { return {blend(a.x, b.x, w), blend(a.y, b.y, w)}; }
 Vec3f blend(const Vec3f& a, const Vec3f& b, float w) {
     return {blend(a.x, b.x, w), blend(a.y, b.y, w), blend(a.z, b.z, w)};
-}
-
-float load_texel(const Texture& texture, size_t i) {
-    return texture.floats.empty() ? half_to_float(texture.halves[i]) : texture.floats[i];
 }
 
 constexpr const char* kMeshHint =
@@ -101,7 +97,8 @@ std::shared_ptr<const Texture> blend_textures(const Texture& a, const Texture& b
     result->file = a.file, result->colour_tag = a.colour_tag;
     const bool has_halves = a.floats.empty() && b.floats.empty();
     result->source_type = is_floating(a) && !has_halves ? SampleType::float32 : a.source_type;
-    const size_t count = 4 * size_t(a.width) * a.height;
+    result->stride = a.stride;
+    const size_t count = result->value_count();
     if (has_halves)
         result->halves.resize(count);
     else
@@ -110,11 +107,7 @@ std::shared_ptr<const Texture> blend_textures(const Texture& a, const Texture& b
     constexpr size_t kGrain = 1 << 16;
     parallel_for("blend textures", count, kGrain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
-            const float value = blend(load_texel(a, i), load_texel(b, i), w);
-            if (has_halves)
-                result->halves[i] = float_to_half(value);
-            else
-                result->floats[i] = value;
+            store_value(*result, i, blend(load_value(a, i), load_value(b, i), w));
         }
     });
     return result;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/progress.h"
+#include "image/texel_layout.h"
 #include "io/file_system.h"
 #include "io/picture/image_coders.h"
 #include "io/scene/asset_cache.h"
@@ -53,16 +54,17 @@ void check_values(const Texture& texture, const std::filesystem::path& file, Map
 Texture make_coded(const Texture& texture, MapSamples samples) {
     Texture result;
     result.width = texture.width, result.height = texture.height;
-    result.channel_count = texture.channel_count;
-    for (uint32_t y = 0; y < texture.height; ++y)
-        for (uint32_t x = 0; x < texture.width; ++x)
-            for (uint32_t c = 0; c < 4; ++c) {
-                const float value = get_texel(texture, x, y, c);
-                if (samples == MapSamples::float16)
-                    result.halves.push_back(Imath::half(value).bits());
-                else
-                    result.floats.push_back(value);
-            }
+    result.channel_count = texture.channel_count, result.stride = texture.stride;
+    const size_t count = texture.value_count();
+    if (samples == MapSamples::float16)
+        result.halves.resize(count);
+    else
+        result.floats.resize(count);
+    for (size_t k = 0; k < count; ++k)
+        if (samples == MapSamples::float16)
+            result.halves[k] = Imath::half(load_value(texture, k)).bits();
+        else
+            result.floats[k] = load_value(texture, k);
     return result;
 }
 

@@ -58,7 +58,9 @@ std::vector<SkyCell> reduce_sky(const Texture& sky) {
         for (uint32_t x = 0; x < width; ++x) {
             const uint32_t u = uint32_t(uint64_t(x) * sky.width / width);
             const uint32_t v = uint32_t(uint64_t(y) * sky.height / height);
-            const Vec3f radiance{get_texel(sky, u, v, 0), get_texel(sky, u, v, 1), get_texel(sky, u, v, 2)};
+            const uint32_t green = sky.channel_count < 3 ? 0 : 1, blue = 2 * green; // grey: one channel
+            const Vec3f radiance{get_texel(sky, u, v, 0), get_texel(sky, u, v, green),
+                                 get_texel(sky, u, v, blue)};
             const size_t cell = size_t(uint64_t(y) * rows / height) * columns + uint64_t(x) * columns / width;
             cells[cell].light += weight * double(scalar::luminance(radiance));
         }

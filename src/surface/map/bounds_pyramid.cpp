@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "image/texel_layout.h"
 #include "relief/error.h"
 #include "surface/map/texels.h"
 #include "surface/map/wrapped_range.h"
@@ -30,10 +31,7 @@ void extend(ChannelRange& range, const std::array<float, 3>& low, const std::arr
 }
 
 void check_size(const Texture& texture) {
-    const size_t count = size_t(4) * texture.width * texture.height;
-    const bool is_right =
-        texture.halves.empty() ? texture.floats.size() == count : texture.halves.size() == count;
-    if (texture.width == 0 || texture.height == 0 || !is_right)
+    if (!is_complete(texture))
         throw Error(ErrorKind::bad_input, {fmt::format("map is {} x {} texels and holds {} bytes",
                                                        texture.width, texture.height, texture.byte_count()),
                                            texture.file, "write the image again"});

@@ -148,14 +148,9 @@ class GutterFinder {
 };
 
 void copy_texel(Texture& texture, const GutterFill::Copy& copy) {
-    const size_t from = 4 * (size_t(copy.from_y) * texture.width + copy.from_x);
-    const size_t to = 4 * (size_t(copy.to_y) * texture.width + copy.to_x);
-    for (size_t c = 0; c < 3; ++c) {
-        if (texture.halves.empty())
-            texture.floats[to + c] = texture.floats[from + c];
-        else
-            texture.halves[to + c] = texture.halves[from + c];
-    }
+    const size_t from = texture.find_texel(copy.from_x, copy.from_y);
+    copy_values(texture, from, texture, texture.find_texel(copy.to_x, copy.to_y),
+                std::min(3u, texture.stride));
 }
 
 } // namespace

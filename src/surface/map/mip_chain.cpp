@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "formulas/mips.h"
-#include "relief/half.h"
+#include "image/texel_layout.h"
 #include "surface/map/texels.h"
 
 namespace relief {
@@ -40,25 +40,15 @@ std::pair<uint32_t, uint32_t> find_readers(uint32_t first, uint32_t last, uint32
 }
 
 void write_texel(Texture& texture, uint32_t x, uint32_t y, const std::array<double, 4>& value) {
-    const size_t at = 4 * (size_t(y) * texture.width + x);
-    for (size_t c = 0; c < 4; ++c) {
-        if (texture.halves.empty())
-            texture.floats[at + c] = float(value[c]);
-        else
-            texture.halves[at + c] = float_to_half(float(value[c]));
-    }
+    const size_t place = texture.find_texel(x, y);
+    for (size_t c = 0; c < texture.stride; ++c) store_value(texture, place + c, float(value[c]));
 }
 
 std::shared_ptr<Texture> make_smaller(const Texture& texture) {
     auto result = std::make_shared<Texture>();
     result->width = (texture.width + 1) / 2, result->height = (texture.height + 1) / 2;
-    result->channel_count = texture.channel_count, result->source_type = texture.source_type;
     result->file = texture.file;
-    const size_t count = size_t(4) * result->width * result->height;
-    if (texture.halves.empty())
-        result->floats.resize(count);
-    else
-        result->halves.resize(count);
+    make_values_like(texture, *result);
     return result;
 }
 
@@ -227,9 +217,7 @@ std::vector<TexelRectangle> MipChain::update(const Texture& texture, const Texel
 size_t MipChain::byte_count() const {
     size_t bytes = outside_.uncovered.byte_count();
     for (const Copy& copy : copies_)
-        bytes += copy.texture->floats.size() * sizeof(float) +
-                 copy.texture->halves.size() * sizeof(uint16_t) + copy.pyramid->byte_count() +
-                 copy.is_outside.size();
+        bytes += copy.texture->byte_count() + copy.pyramid->byte_count() + copy.is_outside.size();
     return bytes;
 }
 

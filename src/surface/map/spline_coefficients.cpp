@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "image/texel_layout.h"
 #include "surface/map/dequantize.h"
 #include "surface/map/texel_plane.h"
 #include "surface/map/texels.h"
@@ -57,7 +58,7 @@ void compute_rectangle(const Texture& texels, const SplineForm& form, const Texe
         if (form.is_interpolating) interpolate_plane(plane);
         for (uint32_t y = rectangle.y0; y <= rectangle.y1; ++y)
             for (uint32_t x = rectangle.x0; x <= rectangle.x1; ++x)
-                coefficients.floats[4 * (size_t(y) * texels.width + x) + channel] = *plane.at(x, y);
+                coefficients.floats[coefficients.find_texel(x, y) + channel] = *plane.at(x, y);
     }
 }
 
@@ -113,8 +114,10 @@ std::shared_ptr<const Texture> make_spline(const std::shared_ptr<const Texture>&
     coefficients->width = texels->width, coefficients->height = texels->height;
     coefficients->channel_count = texels->channel_count, coefficients->source_type = texels->source_type;
     coefficients->file = texels->file;
-    coefficients->floats.resize(4 * size_t(texels->width) * texels->height);
-    for (size_t k = 3; k < coefficients->floats.size(); k += 4) coefficients->floats[k] = 1;
+    coefficients->stride = texels->stride;
+    coefficients->floats.resize(coefficients->value_count());
+    for (size_t k = 3; texels->stride == 4 && k < coefficients->floats.size(); k += 4)
+        coefficients->floats[k] = 1;
     compute_coefficients(*texels, form, all, *coefficients);
     return coefficients;
 }

@@ -12,14 +12,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 
+/// The fourth lane holds anything where there are three channels; of one channel the rest is 0.
 HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
-    if (!texture.floats.empty()) return Lanes4::load_unaligned(texture.floats.data() + 4 * index);
     const hn::FixedTag<float, 4> d;
-    const hn::Rebind<hwy::float16_t, decltype(d)> d16;
-    const auto halves =
-        hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(texture.halves.data() + 4 * index));
+    const size_t place = texture.stride * index;
     Lanes4 result;
-    result.part[0] = hn::PromoteTo(d, halves);
+    if (texture.halves.empty()) {
+        result.part[0] = hn::LoadU(d, texture.floats.data() + place);
+    } else {
+        const hn::Rebind<hwy::float16_t, decltype(d)> d16;
+        const auto* halves = reinterpret_cast<const hwy::float16_t*>(texture.halves.data() + place);
+        result.part[0] = hn::PromoteTo(d, hn::LoadU(d16, halves));
+    }
+    if (texture.stride == 1) result.part[0] = hn::IfThenElseZero(hn::FirstN(d, 1), result.part[0]);
     return result;
 }
 
@@ -29,16 +34,8 @@ HWY_INLINE Pair load_texel_pair(const Texture& texture, size_t first, size_t sec
     Pair pair;
     if constexpr (Pair::kParts == 1) {
         const typename Pair::D d;
-        const hn::Rebind<hwy::float16_t, typename Pair::D> d16;
-        const hn::Half<typename Pair::D> half;
-        const hn::Half<decltype(d16)> half16;
-        const auto* halves = reinterpret_cast<const hwy::float16_t*>(texture.halves.data());
-        const float* floats = texture.floats.data();
         pair.part[0] =
-            texture.floats.empty()
-                ? hn::PromoteTo(d, hn::Combine(d16, hn::LoadU(half16, halves + 4 * second),
-                                               hn::LoadU(half16, halves + 4 * first)))
-                : hn::Combine(d, hn::LoadU(half, floats + 4 * second), hn::LoadU(half, floats + 4 * first));
+            hn::Combine(d, load_texel(texture, second).part[0], load_texel(texture, first).part[0]);
     } else {
         pair.part[0] = load_texel(texture, first).part[0];
         pair.part[1] = load_texel(texture, second).part[0];
@@ -46,27 +43,45 @@ HWY_INLINE Pair load_texel_pair(const Texture& texture, size_t first, size_t sec
     return pair;
 }
 
+/// As floats; `count` is a multiple of sixteen.
+HWY_INLINE void promote_halves(const uint16_t* halves, size_t count, float* floats) {
+    const Lanes16::D d;
+    const hn::Rebind<hwy::float16_t, Lanes16::D> d16;
+    for (size_t k = 0; k < count; k += Lanes16::kLanes)
+        hn::Store(hn::PromoteTo(d, hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(halves + k))), d,
+                  floats + k);
+}
+
 /// Red, green and blue of sixteen texels, one after another in memory, the first at `index`.
 HWY_INLINE void load_texels(const Texture& texture, size_t index, Lanes16 (&color)[3]) {
     using D = Lanes16::D;
     alignas(64) float promoted[64];
-    const float* source = texture.floats.data() + 4 * index;
-    if (texture.floats.empty()) {
-        for (size_t k = 0; k < 16; ++k) load_texel(texture, index + k).store(promoted + 4 * k);
-        source = promoted;
-    }
+    const size_t stride = texture.stride;
+    const float* source = promoted;
+    if (texture.halves.empty())
+        source = texture.floats.data() + stride * index;
+    else
+        promote_halves(texture.halves.data() + stride * index, 16 * stride, promoted);
     for (size_t p = 0; p < Lanes16::kParts; ++p) {
+        const float* texels = source + stride * p * Lanes16::kLanes;
         hn::Vec<D> alpha;
-        hn::LoadInterleaved4(D(), source + 4 * p * Lanes16::kLanes, color[0].part[p], color[1].part[p],
-                             color[2].part[p], alpha);
+        if (stride == 4) {
+            hn::LoadInterleaved4(D(), texels, color[0].part[p], color[1].part[p], color[2].part[p], alpha);
+        } else if (stride == 3) {
+            hn::LoadInterleaved3(D(), texels, color[0].part[p], color[1].part[p], color[2].part[p]);
+        } else {
+            color[0].part[p] = hn::LoadU(D(), texels);
+            color[1].part[p] = color[2].part[p] = hn::Zero(D());
+        }
     }
 }
 
 HWY_INLINE void prefetch_texel(const Texture& texture, size_t index) {
+    const size_t place = texture.stride * index;
     if (texture.halves.empty())
-        __builtin_prefetch(texture.floats.data() + 4 * index);
+        __builtin_prefetch(texture.floats.data() + place);
     else
-        __builtin_prefetch(texture.halves.data() + 4 * index);
+        __builtin_prefetch(texture.halves.data() + place);
 }
 
 } // namespace relief::HWY_NAMESPACE

@@ -1,5 +1,6 @@
 #include "surface/map/texel_plane.h"
 
+#include "image/texel_layout.h"
 #include "surface/map/texels.h"
 
 namespace relief {
@@ -43,8 +44,8 @@ TexelPlane load_plane(const Texture& texels, size_t channel, const SplineForm& f
     float* value = plane.values.data();
     for (const Continuation& row : rows)
         for (const Continuation& column : columns) {
-            const size_t place = 4 * (size_t(row.index) * texels.width + size_t(column.index)) + channel;
-            float texel = texels.halves.empty() ? texels.floats[place] : half_to_float(texels.halves[place]);
+            const size_t place = texels.find_texel(size_t(column.index), size_t(row.index));
+            float texel = load_value(texels, place + channel);
             if (row.is_turned != column.is_turned) texel = 2 * outside - texel;
             *value++ = row.is_outside || column.is_outside ? outside : texel;
         }

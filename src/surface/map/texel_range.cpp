@@ -14,18 +14,19 @@ namespace relief {
 namespace {
 
 template <class Value>
-TexelRows<Value> view_rows(const std::vector<Value>& values, uint32_t width,
+TexelRows<Value> view_rows(const Texture& texture, const std::vector<Value>& values,
                            const TexelRectangle& rectangle) {
-    return {values.data() + 4 * (size_t(rectangle.y0) * width + rectangle.x0), 4 * size_t(width),
-            size_t(rectangle.x1) - rectangle.x0 + 1, size_t(rectangle.y1) - rectangle.y0 + 1};
+    return {values.data() + texture.find_texel(rectangle.x0, rectangle.y0), texture.stride,
+            texture.find_texel(0, 1), size_t(rectangle.x1) - rectangle.x0 + 1,
+            size_t(rectangle.y1) - rectangle.y0 + 1};
 }
 
 } // namespace
 
 std::optional<ChannelRange> find_texel_range(const Texture& texture, const TexelRectangle& rectangle) {
     const Extrema extrema = texture.halves.empty()
-                                ? find_extrema(view_rows(texture.floats, texture.width, rectangle))
-                                : find_extrema(view_rows(texture.halves, texture.width, rectangle));
+                                ? find_extrema(view_rows(texture, texture.floats, rectangle))
+                                : find_extrema(view_rows(texture, texture.halves, rectangle));
     if (!extrema.is_finite) return std::nullopt;
     return ChannelRange{extrema.low, extrema.high};
 }

@@ -7,7 +7,7 @@
 
 #include "formulas/displace.h"
 #include "formulas/texel.h"
-#include "relief/half.h"
+#include "image/texel_layout.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -31,12 +31,9 @@ template <class Index> Index wrap_index(Index index, std::type_identity_t<Index>
 
 /// The texel in column x and row y, both inside the texture: four channels, so that it fills a register.
 inline std::array<float, 4> read_channels(const Texture& texture, int64_t x, int64_t y) {
-    const size_t offset = 4 * (size_t(y) * texture.width + size_t(x));
-    std::array<float, 4> texel;
-    if (texture.halves.empty())
-        for (size_t c = 0; c < 4; ++c) texel[c] = texture.floats[offset + c];
-    else
-        for (size_t c = 0; c < 4; ++c) texel[c] = half_to_float(texture.halves[offset + c]);
+    const size_t place = texture.find_texel(size_t(x), size_t(y));
+    std::array<float, 4> texel{0, 0, 0, 1};
+    for (size_t c = 0; c < texture.stride; ++c) texel[c] = load_value(texture, place + c);
     return texel;
 }
 
@@ -65,11 +62,9 @@ template <class Read> std::array<float, 4> filter_spline(const Read& read, float
 
 /// First three channels of the texel in column x and row y, both inside the texture.
 inline std::array<float, 3> read_texel(const Texture& texture, int64_t x, int64_t y) {
-    const size_t offset = 4 * (size_t(y) * texture.width + size_t(x));
-    if (texture.halves.empty())
-        return {texture.floats[offset], texture.floats[offset + 1], texture.floats[offset + 2]};
-    return {half_to_float(texture.halves[offset]), half_to_float(texture.halves[offset + 1]),
-            half_to_float(texture.halves[offset + 2])};
+    const size_t place = texture.find_texel(size_t(x), size_t(y));
+    if (texture.stride == 1) return {load_value(texture, place), 0, 0};
+    return {load_value(texture, place), load_value(texture, place + 1), load_value(texture, place + 2)};
 }
 
 } // namespace relief

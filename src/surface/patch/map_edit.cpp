@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "formulas/mips.h"
+#include "image/texel_layout.h"
 #include "surface/map/mip_chain.h"
 #include "surface/map/texels.h"
 #include "surface/map/wrapped_range.h"
@@ -98,13 +99,8 @@ void copy_texels(const Texture& source, Texture& target, uint32_t x, uint32_t y)
     for (uint32_t row = 0; row < source.height; ++row)
         for (uint32_t column = 0; column < source.width; ++column) {
             const std::array<float, 4> texel = read_channels(source, column, row);
-            const size_t at = 4 * (size_t(y + row) * target.width + x + column);
-            for (size_t c = 0; c < 4; ++c) {
-                if (target.halves.empty())
-                    target.floats[at + c] = texel[c];
-                else
-                    target.halves[at + c] = float_to_half(texel[c]);
-            }
+            const size_t place = target.find_texel(x + column, y + row);
+            for (size_t c = 0; c < target.stride; ++c) store_value(target, place + c, texel[c]);
         }
 }
 
