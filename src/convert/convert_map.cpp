@@ -185,10 +185,11 @@ std::shared_ptr<const Texture> encode_all(const Displacement& to, const Texture&
     texture->width = source.width, texture->height = source.height;
     texture->channel_count = to.type == DisplacementType::height ? 1 : 3;
     texture->file = source.file;
-    texture->floats.reserve(4 * field.size());
-    for (const Vec3f& d : field) {
-        const std::array<float, 3> texel = encode(to, d);
-        texture->floats.insert(texture->floats.end(), {texel[0], texel[1], texel[2], 1.0f});
+    texture->stride = texture->channel_count;
+    texture->floats.resize(texture->value_count());
+    for (size_t k = 0; k < field.size(); ++k) {
+        const std::array<float, 3> texel = encode(to, field[k]);
+        std::copy_n(texel.begin(), texture->stride, &texture->floats[texture->stride * k]);
     }
     return texture;
 }

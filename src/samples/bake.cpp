@@ -3,8 +3,8 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "image/texel_layout.h"
 #include "math/vec.h"
-#include "relief/half.h"
 
 namespace relief::samples {
 
@@ -13,25 +13,19 @@ namespace {
 std::shared_ptr<Texture> make_texture(const std::string& file, uint32_t size, Texels texels) {
     auto texture = std::make_shared<Texture>();
     texture->width = texture->height = size;
-    texture->channel_count = 3;
+    texture->channel_count = texture->stride = 3;
     texture->file = file;
     texture->source_type = texels == Texels::halves ? SampleType::float16 : SampleType::float32;
     if (texels == Texels::halves)
-        texture->halves.resize(size_t(size) * size * 4);
+        texture->halves.resize(texture->value_count());
     else
-        texture->floats.resize(size_t(size) * size * 4);
+        texture->floats.resize(texture->value_count());
     return texture;
 }
 
 void store(Texture& texture, uint32_t x, uint32_t y, const Vec3f& value) {
-    const size_t at = (size_t(y) * texture.width + x) * 4;
-    for (int c = 0; c < 4; ++c) {
-        const float channel = c == 3 ? 1.0f : get_component(value, c);
-        if (texture.halves.empty())
-            texture.floats[at + size_t(c)] = channel;
-        else
-            texture.halves[at + size_t(c)] = float_to_half(channel);
-    }
+    const size_t place = texture.find_texel(x, y);
+    for (int c = 0; c < 3; ++c) store_value(texture, place + size_t(c), get_component(value, c));
 }
 
 } // namespace
