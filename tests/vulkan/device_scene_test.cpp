@@ -69,6 +69,24 @@ TEST_F(DeviceSceneTest, keeps_surfaces_of_an_odd_number_of_patches_apart) {
     expect_hits_of_cpu(scene, settings, 1500);
 }
 
+/// A child's box, rounded outward, may begin before that of the node above it. Of ten thousands of rays that
+/// come to one patch a round some have gone so far that they would take such a child's patches for tested
+/// ones.
+TEST_F(DeviceSceneTest, finds_hits_in_boxes_that_reach_out_of_those_above) {
+    RenderSettings settings;
+    settings.surface.level = 1;
+    const auto scene =
+        prepare_scene(test::make_body_scene(test::make_torus(60, 90),
+                                            test::make_displacement(test::make_random_map(256, 256, 0.2f, 9),
+                                                                    DisplacementSpace::object)),
+                      settings);
+    const std::vector<cpu::TraceRay> rays = make_rays(40000, 5);
+    TracerConfig config;
+    config.slots = 1;
+    expect_same(cast_on_device(device(), *scene, settings, rays, config), cast_on_cpu(scene, settings, rays),
+                rays);
+}
+
 } // namespace
 
 } // namespace relief::vulkan::tests
