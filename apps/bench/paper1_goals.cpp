@@ -8,7 +8,7 @@ namespace relief::bench {
 
 namespace {
 
-constexpr double kBytesAPatch = 64, kPartyPeakMebibytes = 512, kDepthRatio = 1.3, kPartyFrameMilliseconds = 5;
+constexpr double kBytesAPatch = 64, kPartyPeakMebibytes = 448, kDepthRatio = 1.3, kPartyFrameMilliseconds = 5;
 
 void add_goal(Value& goals, const std::string& name, double goal, double reached, const char* unit) {
     goals.push_back(

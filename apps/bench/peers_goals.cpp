@@ -12,7 +12,7 @@ namespace relief::bench {
 
 namespace {
 
-constexpr double kPeersBytesAPatch = 64, kBytesAMicroQuad = 14, kPeersPartyMebibytes = 512;
+constexpr double kPeersBytesAPatch = 64, kBytesAMicroQuad = 14, kPeersPartyMebibytes = 448;
 constexpr double kColdPrimary = 12, kColdPrimaryTriangles = 60, kColdSecond = 3, kColdSecondTriangles = 10;
 constexpr double kPinhole = 5, kCoherent = 2, kIncoherent = 1.7, kIncoherentGrid = 2.3;
 constexpr double kPeersDepthRatio = 1.3, kTwoThreads = 1.9, kAvx2 = 0.7;
