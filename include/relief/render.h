@@ -197,7 +197,7 @@ struct Checkpoints {
     /// the end; `write` writes bytes that `resume` takes. May be empty.
     std::function<void(const std::function<void(std::ostream&)>& write)> save;
     /// What a render of the same picture wrote: its samples are not traced again, and the result is that of
-    /// one render of all samples, bit for bit; on the Vulkan engine where each ended after 1, 2, 4, 8 or a
+    /// one render of all samples, bit for bit; on the Vulkan engine where each ended after 1, 4 or a
     /// multiple of 16 samples. Null: none. Throws Error{bad_input} for a stream that is damaged or of another
     /// picture or version; scenes with hash 0 (in memory) are told apart by nothing but these settings.
     std::istream* resume = nullptr;

@@ -44,9 +44,9 @@ void closest_bounce_hits(const Tracer& tracer, std::span<TraceRay> rays, std::sp
                          std::span<TraceHit> hits, int depth, BounceScratch& scratch, PointScratch& points) {
     DCHECK(coarse_from.size() == rays.size() && hits.size() == rays.size());
     for (size_t k = 0; k < rays.size(); ++k) rays[k].t_max = coarse_from[k];
-    tracer.closest_hits(rays, hits, depth);
+    closest_scattered_hits(tracer, rays, hits, depth, scratch.order);
     scratch.indices.clear();
-    for (uint32_t k = 0; k < rays.size(); ++k)
+    for (const uint32_t k : scratch.order.places)
         if (!hits[k].is_hit() && coarse_from[k] < kInfinity) scratch.indices.push_back(k);
     if (scratch.indices.empty()) return;
     trace_far(tracer, rays, coarse_from, depth, scalar::kBounceBias, scratch);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "cpu/ray_order.h"
 #include "cpu/tracer.h"
 #include "formulas/bounce_lod.h"
 
@@ -16,6 +17,7 @@ struct BounceScratch {
     std::vector<TraceRay> rays;
     std::vector<TraceHit> hits;
     std::vector<SurfacePoint> points;
+    RayOrder order;
 };
 
 /// As Tracer::closest_hits at `depth`, where ray k sees M_(lod_bias) up to coarse_from[k] and M_(kBounceBias)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "base/timer.h"
 #include "cpu/tile_tracer.h"
 #include "formulas/bsdf.h"
@@ -34,15 +35,14 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
         for (int x0 = tile.x0; x0 < tile.x1; x0 += kPacketEdge)
             for (int y = y0; y < std::min(y0 + kPacketEdge, tile.y1); ++y)
                 for (int x = x0; x < std::min(x0 + kPacketEdge, tile.x1); ++x) {
-                    Path path;
-                    path.x = x, path.y = y;
-                    paths_.push_back(path);
-                    seeds_.push_back(scalar::make_pixel_seed(settings_.image.seed, uint32_t(x), uint32_t(y)));
+                    pixels_.push_back(
+                        {x, y, scalar::make_pixel_seed(settings_.image.seed, uint32_t(x), uint32_t(y))});
                 }
 }
 
-void TileTracer::trace_sample(int index) {
-    sample_index_ = uint32_t(index);
+void TileTracer::trace_samples(SampleRange samples) {
+    DCHECK(samples.count <= kMostSamples);
+    first_sample_ = uint32_t(samples.first), sample_count_ = uint32_t(samples.count);
     start_paths();
     for (depth_ = 0; !active_.empty(); ++depth_) {
         trace_paths();
@@ -58,23 +58,25 @@ void TileTracer::trace_sample(int index) {
 }
 
 void TileTracer::start_paths() {
-    sample_2d(seeds_, scalar::kPixelPair, places_);
-    active_.resize(paths_.size());
-    for (uint32_t i = 0; i < paths_.size(); ++i) {
-        Path& path = paths_[i];
-        places_[i] = Vec2f{float(path.x), float(path.y)} + places_[i];
-        path.throughput = {1, 1, 1};
-        path.body = kNoIndex;
-        path.result = {};
-        path.result.cost = 1;
-        active_[i] = i;
+    const size_t count = pixels_.size() * sample_count_;
+    paths_.resize(count), seeds_.resize(count), active_.resize(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        const Pixel& pixel = pixels_[i % pixels_.size()];
+        paths_[i] = {};
+        paths_[i].x = pixel.x, paths_[i].y = pixel.y;
+        paths_[i].result.cost = 1;
+        seeds_[i] = pixel.seed, active_[i] = i;
     }
+    find_sample_begins();
+    sample_2d(seeds_, scalar::kPixelPair, places_);
+    for (size_t i = 0; i < count; ++i)
+        places_[i] = Vec2f{float(paths_[i].x), float(paths_[i].y)} + places_[i];
     if (path_lights_.is_on()) path_lights_.start(paths_.size());
     rays_.resize(paths_.size());
     if (!is_pinhole())
-        for (size_t i = 0; i < paths_.size(); ++i) {
+        for (uint32_t i = 0; i < paths_.size(); ++i) {
             const scalar::CameraRay ray =
-                scalar::aim_camera_ray(camera_, places_[i], seeds_[i], sample_index_);
+                scalar::aim_camera_ray(camera_, places_[i], seeds_[i], find_sample(i));
             rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
         }
     counters_.camera_rays += paths_.size();
@@ -83,7 +85,12 @@ void TileTracer::start_paths() {
 void TileTracer::trace_paths() {
     hits_.resize(rays_.size());
     if (depth_ == 0 && is_pinhole())
-        tracer_.camera_hits(camera_, places_, rays_, hits_);
+        for (uint32_t s = 0; s < sample_count_; ++s) {
+            const size_t first = s * pixels_.size(), count = pixels_.size();
+            tracer_.camera_hits(camera_, std::span(places_).subspan(first, count),
+                                std::span(rays_).subspan(first, count),
+                                std::span(hits_).subspan(first, count));
+        }
     else if (depth_ == 0)
         tracer_.closest_hits(rays_, hits_);
     else
@@ -103,15 +110,27 @@ void TileTracer::note_ray(const Path& path, const TraceRay& ray, float t_end) {
     footprints_->at(path.x, path.y).add_ray(ray.origin, ray.direction, t_end);
 }
 
+/// `seeds`: of the active paths.
 void TileTracer::sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const {
     drawn.resize(seeds.size());
-    tracer_.shading_kernels().sample_2d(seeds.data(), seeds.size(), sample_index_, pair, drawn.data());
+    for (uint32_t s = 0; s < sample_count_; ++s) {
+        const size_t begin = sample_begins_[s], count = sample_begins_[s + 1] - begin;
+        tracer_.shading_kernels().sample_2d(seeds.data() + begin, count, first_sample_ + s, pair,
+                                            drawn.data() + begin);
+    }
+}
+
+void TileTracer::find_sample_begins() {
+    for (uint32_t s = 0; s <= sample_count_; ++s)
+        sample_begins_[s] =
+            size_t(std::ranges::lower_bound(active_, s * uint32_t(pixels_.size())) - active_.begin());
 }
 
 /// The roulette's pair only where it is needed.
 void TileTracer::draw_random() {
     wave_seeds_.clear();
     for (const uint32_t i : active_) wave_seeds_.push_back(seeds_[i]);
+    find_sample_begins();
     const bool needs_roulette = uint32_t(depth_) >= scalar::kRouletteDepth || lights_.needs_emitter_number();
     for (const uint32_t kind :
          {scalar::kPickPair, scalar::kLightPair, scalar::kBsdfPair, scalar::kRoulettePair}) {
@@ -155,7 +174,7 @@ void TileTracer::add_shadow_light(size_t k) {
 
 void TileTracer::trace_shadow_rays() {
     occluded_.assign(shadow_rays_.size(), 0);
-    tracer_.any_hits(shadow_rays_, occluded_, depth_);
+    any_scattered_hits(tracer_, shadow_rays_, occluded_, depth_, bounce_scratch_.order);
     if (tracer_.scene().has_cut_outs) pass_shadow_rays();
     if (footprints_)
         for (size_t k = 0; k < shadows_.size(); ++k)
@@ -168,7 +187,9 @@ void TileTracer::trace_shadow_rays() {
 void trace_tile(const PathTracerScene& scene, Film& film, const Window& tile, SampleRange samples,
                 TileReport& report) {
     TileTracer tracer(scene, film, tile, report);
-    for (int k = samples.first; k < samples.first + samples.count; ++k) tracer.trace_sample(k);
+    const int end = samples.first + samples.count;
+    for (int k = samples.first; k < end; k += TileTracer::kMostSamples)
+        tracer.trace_samples({k, std::min(TileTracer::kMostSamples, end - k)});
 }
 
 } // namespace relief::cpu

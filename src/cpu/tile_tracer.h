@@ -36,20 +36,25 @@ struct ShadowRay {
     Vec3f contribution;
 };
 
-/// All paths of a sample advance together, so that rays and hits reach the SIMD
-/// kernels in packets. Entry k of the wave's arrays belongs to the path active_[k].
+/// All paths of some samples advance together, so that rays and hits reach the SIMD kernels in packets. Entry
+/// k of the wave's arrays belongs to the path active_[k].
 class TileTracer {
   public:
     TileTracer(const PathTracerScene& scene, Film& film, const Window& tile, TileReport& report);
-    void trace_sample(int index);
+    /// At most kMostSamples.
+    void trace_samples(SampleRange samples);
+
+    static constexpr int kMostSamples = 16;
 
   private:
     bool is_pinhole() const { return camera_.aperture_radius == 0; }
     int last_depth() const { return int(scalar::find_last_depth(uint32_t(settings_.image.bounces))); }
+    uint32_t find_sample(uint32_t path) const { return first_sample_ + path / uint32_t(pixels_.size()); }
     void start_paths();
     void trace_paths();
     float draw_cut_out(uint32_t path, bool is_shadow, uint32_t round) const {
-        return scalar::draw_cut_out(seeds_[path], sample_index_, uint32_t(depth_), is_shadow ? 1 : 0, round);
+        return scalar::draw_cut_out(seeds_[path], find_sample(path), uint32_t(depth_), is_shadow ? 1 : 0,
+                                    round);
     }
     void pass_shadow_rays();
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
@@ -66,6 +71,7 @@ class TileTracer {
     void drop_misses();
     void draw_random();
     void sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
+    void find_sample_begins();
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
     PointMaterial meet_material(size_t k, size_t n);
@@ -97,10 +103,15 @@ class TileTracer {
     const bool has_glass_, has_catchers_;
     scalar::CameraFrame camera_;
     scalar::BounceLod bounce_lod_;
-    uint32_t sample_index_ = 0;
-    int depth_ = 0;               ///< vertices behind the wave: 0 for camera rays
-    std::vector<Path> paths_;     ///< in packets of kPacketEdge squared pixels
-    std::vector<uint32_t> seeds_; ///< of the pixels of paths_
+    struct Pixel {
+        int x, y;
+        uint32_t seed;
+    };
+    std::vector<Pixel> pixels_;                    ///< in packets of kPacketEdge squared
+    uint32_t first_sample_ = 0, sample_count_ = 0; ///< of the wave
+    int depth_ = 0;                                ///< vertices behind the wave: 0 for camera rays
+    std::vector<Path> paths_;                      ///< all pixels of a sample after those of the one before
+    std::vector<uint32_t> seeds_;                  ///< of the pixels of paths_
 
     std::vector<uint32_t> active_; ///< paths still on their way, in order
     std::vector<TraceRay> rays_;
@@ -113,6 +124,7 @@ class TileTracer {
     std::vector<SurfacePoint> points_;
     std::vector<Vec3f> tangents_; ///< of points on anisotropic materials
     std::vector<uint32_t> wave_seeds_;
+    std::array<size_t, kMostSamples + 1> sample_begins_{}; ///< of each sample among active_, and their end
     std::array<std::vector<Vec2f>, scalar::kPairsPerBounce> random_; ///< by kind of pair
 
     std::array<VertexLanes, kBlock / 16> lanes_{};

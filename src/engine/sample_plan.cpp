@@ -21,13 +21,13 @@ constexpr double kDeviations = 1.96 / 1.25;
 constexpr double kNeighbourShare = 0.5;
 
 int find_next_end(int samples) {
-    return samples < kLongestPass ? std::max(1, 2 * samples)
+    return samples < kLongestPass ? std::clamp(4 * samples, 1, kLongestPass)
                                   : samples / kLongestPass * kLongestPass + kLongestPass;
 }
 
 /// Ends of passes: elsewhere a render ended that had fewer samples.
 bool is_end(int samples) {
-    return samples >= kLongestPass ? samples % kLongestPass == 0 : (samples & (samples - 1)) == 0;
+    return samples >= kLongestPass ? samples % kLongestPass == 0 : samples == 1 || samples == 4;
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Which samples of which pixels come next. Passes over the picture end at 1, 2, 4, 8, 16, 32, 48, ... samples
+// Which samples of which pixels come next. Passes over the picture end at 1, 4, 16, 32, 48, ... samples
 // a pixel; with ImageSettings::noise a block of pixels takes no part in a pass when its noise is low enough
 // at the end of the one before.
 #pragma once

@@ -1,0 +1,71 @@
+#include "cpu/ray_order.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace relief::cpu {
+
+namespace {
+
+/// The sphere of directions is cut into so many columns and rows of an octahedral map (Meyer et al. 2010).
+constexpr int kCellsASide = 16;
+constexpr size_t kLeastRays = 1024; ///< of fewer rays few go the same way
+
+int find_column(float coordinate) {
+    return std::clamp(int((coordinate + 1) * (0.5f * kCellsASide)), 0, kCellsASide - 1);
+}
+
+/// Of a finite direction; any cell for others.
+uint8_t find_cell(const Vec3f& d) {
+    const float sum = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
+    const float x = d.x / sum, y = d.y / sum;
+    if (!(sum > 0) || !(std::fabs(x) <= 1 && std::fabs(y) <= 1)) return 0;
+    // The lower half is folded out over the corners.
+    const float u = d.z < 0 ? std::copysign(1 - std::fabs(y), x) : x;
+    const float v = d.z < 0 ? std::copysign(1 - std::fabs(x), y) : y;
+    return uint8_t(find_column(v) * kCellsASide + find_column(u));
+}
+
+/// Fills order.places and order.rays: rays of one cell of directions after those of another. Stable. False,
+/// with the places alone, for fewer rays than an order is worth its time for.
+bool order_by_direction(std::span<const TraceRay> rays, RayOrder& order) {
+    constexpr size_t kCellCount = size_t(kCellsASide) * kCellsASide;
+    order.places.resize(rays.size());
+    if (rays.size() < kLeastRays) {
+        std::iota(order.places.begin(), order.places.end(), 0u);
+        return false;
+    }
+    std::array<uint32_t, kCellCount + 1> begin{};
+    order.cells.resize(rays.size());
+    for (size_t k = 0; k < rays.size(); ++k) {
+        order.cells[k] = find_cell(rays[k].direction);
+        ++begin[order.cells[k] + 1];
+    }
+    for (size_t cell = 0; cell < kCellCount; ++cell) begin[cell + 1] += begin[cell];
+    for (uint32_t k = 0; k < rays.size(); ++k) order.places[begin[order.cells[k]]++] = k;
+    order.rays.resize(rays.size());
+    for (size_t k = 0; k < rays.size(); ++k) order.rays[k] = rays[order.places[k]];
+    return true;
+}
+
+} // namespace
+
+void closest_scattered_hits(const Tracer& tracer, std::span<const TraceRay> rays, std::span<TraceHit> hits,
+                            int depth, RayOrder& order) {
+    if (!order_by_direction(rays, order)) return tracer.closest_hits(rays, hits, depth);
+    order.hits.resize(rays.size());
+    tracer.closest_hits(order.rays, order.hits, depth);
+    for (size_t k = 0; k < rays.size(); ++k) hits[order.places[k]] = order.hits[k];
+}
+
+void any_scattered_hits(const Tracer& tracer, std::span<const TraceRay> rays, std::span<uint8_t> occluded,
+                        int depth, RayOrder& order) {
+    if (!order_by_direction(rays, order)) return tracer.any_hits(rays, occluded, depth);
+    order.occluded.resize(rays.size());
+    tracer.any_hits(order.rays, order.occluded, depth);
+    for (size_t k = 0; k < rays.size(); ++k) occluded[order.places[k]] = order.occluded[k];
+}
+
+} // namespace relief::cpu
