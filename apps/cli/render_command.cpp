@@ -66,6 +66,14 @@ void tell_of_earlier_samples(const RenderResult& result, const ImageSettings& im
                    most, most);
 }
 
+void tell_of_idle_noise(const RenderOptions& options, const ImageSettings& image) {
+    constexpr int kLeastSamples = 16; // before noise is judged
+    if (image.noise > 0 && image.spp <= kLeastSamples && !options.progress.is_quiet)
+        fmt::print(stderr,
+                   "relief: warning: --noise is judged after {} samples, and --spp {} ends there or before\n",
+                   kLeastSamples, image.spp);
+}
+
 /// The scene file of a scene that may move, and the frame that it was loaded at; null: a still one.
 struct Source {
     Shot* shot = nullptr;
@@ -75,6 +83,7 @@ struct Source {
 int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
                    const Source& source, const PendingTimes& waiting) {
     catch_interrupts();
+    tell_of_idle_noise(options, settings.image);
     const std::filesystem::path& output = options.output;
     RenderResult result;
     ToldWarnings told;

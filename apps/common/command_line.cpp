@@ -81,6 +81,16 @@ void refuse_count(const CLI::App& app, const CLI::ParseError& error) {
     }
 }
 
+/// An option that stands where the value of the one before it should.
+void refuse_options_as_values(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& value : option->results())
+            if (value.starts_with("--") && app.get_option_no_throw(value))
+                throw Error(ErrorKind::usage,
+                            {fmt::format("its value is missing before {}", value), option->get_name(),
+                             fmt::format("{} {}", option->get_name(), option->get_type_name())});
+}
+
 } // namespace
 
 int run_guarded(const std::function<int()>& body) {
@@ -130,6 +140,7 @@ void refuse_option(const std::string& word, const std::string& value, const CLI:
 }
 
 void refuse_extras(const CLI::App& app, const std::string& command) {
+    refuse_options_as_values(app);
     const std::vector<std::string> extras = app.remaining();
     if (extras.empty()) return;
     const std::string help = fmt::format("{} --help lists the options", command);

@@ -109,6 +109,10 @@ TEST_F(Usage, an_option_given_twice_is_named_with_its_values) {
 TEST_F(Usage, an_option_without_its_value_says_what_is_missing) {
     expect_refused({"render", "plane.obj", "--fov"}, "--fov: its value is missing\nhint: --fov D\n");
     expect_refused({"merge", "a.exr", "b.exr", "-o"}, "-o: its value is missing\nhint: -o FILE\n");
+    expect_refused({"render", "plane.obj", "--vdm", "--size", "8x8"},
+                   "--vdm: its value is missing before --size\nhint: --vdm MAP\n");
+    expect_refused({"render", "plane.obj", "--vdm", "--denoise"},
+                   "--vdm: its value is missing before --denoise");
 }
 
 TEST_F(Usage, an_unknown_preset_is_wrong_usage_on_a_command_line_and_bad_input_in_a_file) {

@@ -27,6 +27,15 @@ float measure_fill(const Camera& camera, const std::vector<Vec3f>& points) {
     return result;
 }
 
+TEST_F(SceneFiles, broken_json_says_what_may_be_wrong) {
+    EXPECT_HAS(error_of(R"({"version": 1 "render": {}})"), "line 1, column 22");
+    EXPECT_HAS(error_of(R"({"version": 1 "render": {}})"), "a comma may be missing before it");
+    EXPECT_HAS(error_of(R"({"materials": {"a": {"base_color": [1 2 3]}}})"), "a comma may be missing");
+    EXPECT_HAS(error_of(R"({"version": 1, })"), "a comma too many before it");
+    EXPECT_HAS(error_of(R"({version: 1})"), "a key without quotes");
+    EXPECT_HAS(error_of(R"({"version": 1)"), "a bracket is not closed");
+}
+
 TEST_F(SceneFiles, every_field_is_read) {
     write_pixels<float>("env.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, {1, 2, 3, 4, 5, 6});
     write_pixels<uint8_t>("color.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {255, 128, 0});

@@ -96,6 +96,17 @@ class DocumentBuilder {
     std::string duplicate_;
 };
 
+/// By what the parser has met in place of what.
+std::string hint_at_syntax(std::string_view error) {
+    const auto has = [&](std::string_view part) { return error.find(part) != std::string_view::npos; };
+    if (has("unexpected string literal; expected '}'") || has("unexpected '{'; expected ']'") ||
+        has("literal; expected ']'"))
+        return "a comma may be missing before it";
+    if (has("expected string literal")) return "a comma too many before it, or a key without quotes";
+    if (has("unexpected end of input")) return "a bracket is not closed";
+    return "";
+}
+
 std::string describe_type(const Json& value) {
     return (value.is_array() || value.is_object() ? "an "
             : value.is_null()                     ? ""
@@ -115,7 +126,8 @@ Json parse_json(std::string_view text, const std::string& file) {
         const LineAndColumn place = locate(text, error.byte > 0 ? error.byte - 1 : 0);
         throw Error(ErrorKind::bad_input,
                     {"broken JSON: " + strip_parser_prefix(error.what()),
-                     fmt::format("{}, line {}, column {}", file, place.line, place.column), ""});
+                     fmt::format("{}, line {}, column {}", file, place.line, place.column),
+                     hint_at_syntax(error.what())});
     } catch (const Json::exception& error) {
         throw Error(ErrorKind::bad_input, {"broken JSON: " + strip_parser_prefix(error.what()), file, ""});
     }
