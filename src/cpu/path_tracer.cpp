@@ -42,8 +42,7 @@ TileTracer::TileTracer(const PathTracerScene& scene, Film& film, const Window& t
 
 void TileTracer::trace_samples(SampleRange samples) {
     DCHECK(samples.count <= kMostSamples);
-    first_sample_ = uint32_t(samples.first), sample_count_ = uint32_t(samples.count);
-    start_paths();
+    start_paths(samples);
     for (depth_ = 0; !active_.empty(); ++depth_) {
         trace_paths();
         shade_paths();
@@ -57,26 +56,26 @@ void TileTracer::trace_samples(SampleRange samples) {
     counters_.film_s += timer.seconds();
 }
 
-void TileTracer::start_paths() {
-    const size_t count = pixels_.size() * sample_count_;
-    paths_.resize(count), seeds_.resize(count), active_.resize(count);
+void TileTracer::start_paths(SampleRange samples) {
+    const size_t count = pixels_.size() * size_t(samples.count);
+    paths_.resize(count), seeds_.resize(count), samples_.resize(count), active_.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
-        const Pixel& pixel = pixels_[i % pixels_.size()];
+        const Pixel& pixel = pixels_[i / uint32_t(samples.count)];
         paths_[i] = {};
         paths_[i].x = pixel.x, paths_[i].y = pixel.y;
         paths_[i].result.cost = 1;
-        seeds_[i] = pixel.seed, active_[i] = i;
+        seeds_[i] = pixel.seed, samples_[i] = uint32_t(samples.first) + i % uint32_t(samples.count);
+        active_[i] = i;
     }
-    find_sample_begins();
-    sample_2d(seeds_, scalar::kPixelPair, places_);
+    list_wave_samples();
+    sample_2d(scalar::kPixelPair, places_);
     for (size_t i = 0; i < count; ++i)
         places_[i] = Vec2f{float(paths_[i].x), float(paths_[i].y)} + places_[i];
     if (path_lights_.is_on()) path_lights_.start(paths_.size());
     rays_.resize(paths_.size());
     if (!is_pinhole())
         for (uint32_t i = 0; i < paths_.size(); ++i) {
-            const scalar::CameraRay ray =
-                scalar::aim_camera_ray(camera_, places_[i], seeds_[i], find_sample(i));
+            const scalar::CameraRay ray = scalar::aim_camera_ray(camera_, places_[i], seeds_[i], samples_[i]);
             rays_[i] = {ray.origin, 0, ray.direction, kInfinity, 0};
         }
     counters_.camera_rays += paths_.size();
@@ -85,12 +84,7 @@ void TileTracer::start_paths() {
 void TileTracer::trace_paths() {
     hits_.resize(rays_.size());
     if (depth_ == 0 && is_pinhole())
-        for (uint32_t s = 0; s < sample_count_; ++s) {
-            const size_t first = s * pixels_.size(), count = pixels_.size();
-            tracer_.camera_hits(camera_, std::span(places_).subspan(first, count),
-                                std::span(rays_).subspan(first, count),
-                                std::span(hits_).subspan(first, count));
-        }
+        tracer_.camera_hits(camera_, places_, rays_, hits_);
     else if (depth_ == 0)
         tracer_.closest_hits(rays_, hits_);
     else
@@ -110,34 +104,27 @@ void TileTracer::note_ray(const Path& path, const TraceRay& ray, float t_end) {
     footprints_->at(path.x, path.y).add_ray(ray.origin, ray.direction, t_end);
 }
 
-/// `seeds`: of the active paths.
-void TileTracer::sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const {
-    drawn.resize(seeds.size());
-    for (uint32_t s = 0; s < sample_count_; ++s) {
-        const size_t begin = sample_begins_[s], count = sample_begins_[s + 1] - begin;
-        tracer_.shading_kernels().sample_2d(seeds.data() + begin, count, first_sample_ + s, pair,
-                                            drawn.data() + begin);
-    }
+void TileTracer::sample_2d(uint32_t pair, std::vector<Vec2f>& drawn) const {
+    drawn.resize(wave_seeds_.size());
+    tracer_.shading_kernels().sample_2d({wave_seeds_.data(), wave_samples_.data(), wave_seeds_.size()}, pair,
+                                        drawn.data());
 }
 
-void TileTracer::find_sample_begins() {
-    for (uint32_t s = 0; s <= sample_count_; ++s)
-        sample_begins_[s] =
-            size_t(std::ranges::lower_bound(active_, s * uint32_t(pixels_.size())) - active_.begin());
+void TileTracer::list_wave_samples() {
+    wave_seeds_.clear(), wave_samples_.clear();
+    for (const uint32_t i : active_) wave_seeds_.push_back(seeds_[i]), wave_samples_.push_back(samples_[i]);
 }
 
 /// The roulette's pair only where it is needed.
 void TileTracer::draw_random() {
-    wave_seeds_.clear();
-    for (const uint32_t i : active_) wave_seeds_.push_back(seeds_[i]);
-    find_sample_begins();
+    list_wave_samples();
     const bool needs_roulette = uint32_t(depth_) >= scalar::kRouletteDepth || lights_.needs_emitter_number();
     for (const uint32_t kind :
          {scalar::kPickPair, scalar::kLightPair, scalar::kBsdfPair, scalar::kRoulettePair}) {
         if (kind == scalar::kRoulettePair && !needs_roulette)
             random_[kind].assign(active_.size(), Vec2f{});
         else
-            sample_2d(wave_seeds_, scalar::find_bounce_pair(uint32_t(depth_), kind), random_[kind]);
+            sample_2d(scalar::find_bounce_pair(uint32_t(depth_), kind), random_[kind]);
     }
 }
 

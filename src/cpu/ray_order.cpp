@@ -11,7 +11,7 @@ namespace {
 
 /// The sphere of directions is cut into so many columns and rows of an octahedral map (Meyer et al. 2010).
 constexpr int kCellsASide = 16;
-constexpr size_t kLeastRays = 1024; ///< of fewer rays few go the same way
+constexpr size_t kLeastRays = 256; ///< of fewer rays few go the same way
 
 int find_column(float coordinate) {
     return std::clamp(int((coordinate + 1) * (0.5f * kCellsASide)), 0, kCellsASide - 1);
@@ -32,18 +32,20 @@ uint8_t find_cell(const Vec3f& d) {
 /// with the places alone, for fewer rays than an order is worth its time for.
 bool order_by_direction(std::span<const TraceRay> rays, RayOrder& order) {
     constexpr size_t kCellCount = size_t(kCellsASide) * kCellsASide;
+    // Rays of a packet have one LOD bias: those of M_0 come before those of a coarser surface.
+    constexpr size_t kKeyCount = 2 * kCellCount;
     order.places.resize(rays.size());
     if (rays.size() < kLeastRays) {
         std::iota(order.places.begin(), order.places.end(), 0u);
         return false;
     }
-    std::array<uint32_t, kCellCount + 1> begin{};
+    std::array<uint32_t, kKeyCount + 1> begin{};
     order.cells.resize(rays.size());
     for (size_t k = 0; k < rays.size(); ++k) {
-        order.cells[k] = find_cell(rays[k].direction);
+        order.cells[k] = uint16_t(find_cell(rays[k].direction) + (rays[k].lod_bias > 0 ? kCellCount : 0));
         ++begin[order.cells[k] + 1];
     }
-    for (size_t cell = 0; cell < kCellCount; ++cell) begin[cell + 1] += begin[cell];
+    for (size_t cell = 0; cell < kKeyCount; ++cell) begin[cell + 1] += begin[cell];
     for (uint32_t k = 0; k < rays.size(); ++k) order.places[begin[order.cells[k]]++] = k;
     order.rays.resize(rays.size());
     for (size_t k = 0; k < rays.size(); ++k) order.rays[k] = rays[order.places[k]];

@@ -11,7 +11,7 @@ namespace relief::cpu {
 
 /// Memory of one thread.
 struct RayOrder {
-    std::vector<uint8_t> cells;   ///< of directions
+    std::vector<uint16_t> cells;  ///< of directions, by LOD bias
     std::vector<uint32_t> places; ///< of the rays in the list that was given
     std::vector<TraceRay> rays;   ///< in order
     std::vector<TraceHit> hits;   ///< likewise

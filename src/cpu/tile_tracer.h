@@ -49,12 +49,10 @@ class TileTracer {
   private:
     bool is_pinhole() const { return camera_.aperture_radius == 0; }
     int last_depth() const { return int(scalar::find_last_depth(uint32_t(settings_.image.bounces))); }
-    uint32_t find_sample(uint32_t path) const { return first_sample_ + path / uint32_t(pixels_.size()); }
-    void start_paths();
+    void start_paths(SampleRange samples);
     void trace_paths();
     float draw_cut_out(uint32_t path, bool is_shadow, uint32_t round) const {
-        return scalar::draw_cut_out(seeds_[path], find_sample(path), uint32_t(depth_), is_shadow ? 1 : 0,
-                                    round);
+        return scalar::draw_cut_out(seeds_[path], samples_[path], uint32_t(depth_), is_shadow ? 1 : 0, round);
     }
     void pass_shadow_rays();
     void note_ray(const Path& path, const TraceRay& ray, float t_end);
@@ -70,8 +68,8 @@ class TileTracer {
     void cover_catchers();
     void drop_misses();
     void draw_random();
-    void sample_2d(std::span<const uint32_t> seeds, uint32_t pair, std::vector<Vec2f>& drawn) const;
-    void find_sample_begins();
+    void sample_2d(uint32_t pair, std::vector<Vec2f>& drawn) const;
+    void list_wave_samples();
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
     PointMaterial meet_material(size_t k, size_t n);
@@ -107,11 +105,10 @@ class TileTracer {
         int x, y;
         uint32_t seed;
     };
-    std::vector<Pixel> pixels_;                    ///< in packets of kPacketEdge squared
-    uint32_t first_sample_ = 0, sample_count_ = 0; ///< of the wave
-    int depth_ = 0;                                ///< vertices behind the wave: 0 for camera rays
-    std::vector<Path> paths_;                      ///< all pixels of a sample after those of the one before
-    std::vector<uint32_t> seeds_;                  ///< of the pixels of paths_
+    std::vector<Pixel> pixels_;             ///< in packets of kPacketEdge squared
+    int depth_ = 0;                         ///< vertices behind the wave: 0 for camera rays
+    std::vector<Path> paths_;               ///< all samples of a pixel after those of the one before
+    std::vector<uint32_t> seeds_, samples_; ///< of paths_: of the pixel, and the number of the sample
 
     std::vector<uint32_t> active_; ///< paths still on their way, in order
     std::vector<TraceRay> rays_;
@@ -122,9 +119,8 @@ class TileTracer {
     std::vector<Vec3f> directions_; ///< of rays that missed
     std::vector<EnvironmentLookup> backgrounds_;
     std::vector<SurfacePoint> points_;
-    std::vector<Vec3f> tangents_; ///< of points on anisotropic materials
-    std::vector<uint32_t> wave_seeds_;
-    std::array<size_t, kMostSamples + 1> sample_begins_{}; ///< of each sample among active_, and their end
+    std::vector<Vec3f> tangents_;                                    ///< of points on anisotropic materials
+    std::vector<uint32_t> wave_seeds_, wave_samples_;                ///< of active_
     std::array<std::vector<Vec2f>, scalar::kPairsPerBounce> random_; ///< by kind of pair
 
     std::array<VertexLanes, kBlock / 16> lanes_{};

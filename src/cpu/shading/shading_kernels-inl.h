@@ -22,13 +22,14 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace {
 
-/// scalar::sobol_pair for each seed.
-void sample_2d(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair, Vec2f* drawn) {
-    for (size_t first = 0; first < count; first += 16) {
-        const size_t size = HWY_MIN(size_t(16), count - first);
-        alignas(64) uint32_t seed[16] = {};
-        std::memcpy(seed, seeds + first, size * sizeof(uint32_t));
-        const wide::Vec2 u = wide::sobol_pair(wide::Uint::load(seed), sample_index, pair);
+/// scalar::sobol_pair for each seed and sample.
+void sample_2d(const cpu::SampleList& list, uint32_t pair, Vec2f* drawn) {
+    for (size_t first = 0; first < list.count; first += 16) {
+        const size_t size = HWY_MIN(size_t(16), list.count - first);
+        alignas(64) uint32_t seed[16] = {}, sample[16] = {};
+        std::memcpy(seed, list.seeds + first, size * sizeof(uint32_t));
+        std::memcpy(sample, list.samples + first, size * sizeof(uint32_t));
+        const wide::Vec2 u = wide::sobol_pair(wide::Uint::load(seed), wide::Uint::load(sample), pair);
         alignas(64) float x[16], y[16];
         u.x.store(x), u.y.store(y);
         for (size_t lane = 0; lane < size; ++lane) drawn[first + lane] = {x[lane], y[lane]};

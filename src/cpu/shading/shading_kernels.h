@@ -74,13 +74,18 @@ inline void set_lane(const Vec3f& v, size_t lane, float (&vectors)[3][16]) {
     vectors[0][lane] = v.x, vectors[1][lane] = v.y, vectors[2][lane] = v.z;
 }
 
+/// Samples of pixels, by seeds of the pixels and numbers of the samples.
+struct SampleList {
+    const uint32_t *seeds, *samples;
+    size_t count;
+};
+
 struct ShadingKernels {
     const char* name;                               ///< as that of the Kernels for the same instruction set
     void (*make_points)(const PointBatch&);         ///< as Tracer::make_surface_point, on a displaced surface
     void (*make_polygon_points)(const PointBatch&); ///< the same on one that is not
-    /// drawn[k] = scalar::sobol_pair(seeds[k], sample_index, pair).
-    void (*sample_2d)(const uint32_t* seeds, size_t count, uint32_t sample_index, uint32_t pair,
-                      Vec2f* drawn);
+    /// drawn[k] = scalar::sobol_pair(seeds[k], samples[k], pair).
+    void (*sample_2d)(const SampleList&, uint32_t pair, Vec2f* drawn);
     /// What the vertices of a batch scatter (formulas/bsdf.h, layered_bsdf.h, glass_bsdf.h).
     void (*reflect)(const VertexBatch&, VertexLanes&);
     /// As the functions of EnvironmentLight for one direction, place or pair.

@@ -18,8 +18,8 @@ HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
 namespace {
 
-/// Of the angle between two rays of a packet: some 25 degrees.
-constexpr float kLeastSquaredCosine = 0.82f;
+/// Of the angle between two rays of a packet: 60 degrees.
+constexpr float kLeastSquaredCosine = 0.25f;
 
 /// Sixteen rays that can hit and have the requested LOD bias, with directions near the first one.
 bool is_coherent(const RayLanes& rays, const Vec3f& first) {
