@@ -32,7 +32,8 @@ RenderSettings make_direct_light(const Paper1Options& options) {
     return settings;
 }
 
-/// A cache of patch trees that does not grow, so that what memory a scene takes does not hang on the machine's.
+/// A cache of patch trees that does not grow, so that what memory a scene takes does not hang on the
+/// machine's.
 RenderSettings make_capped(RenderSettings settings) {
     settings.surface.cache_bytes = kDefaultCacheBytes;
     return settings;

@@ -1,4 +1,6 @@
 // Images with as many values a texel as they have channels give the same pictures as those with four.
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "relief/error.h"

@@ -10,7 +10,7 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr size_t kUnit = 64;       ///< sizes of blocks are multiples of it
+constexpr size_t kUnit = 64;      ///< sizes of blocks are multiples of it
 constexpr int kMostLookedAt = 16; ///< blocks of a list that are looked at, since some of them are too small
 
 /// So that address sanitizers see who reads a tree that is gone.
