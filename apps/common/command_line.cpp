@@ -83,12 +83,14 @@ void refuse_count(const CLI::App& app, const CLI::ParseError& error) {
 
 /// An option that stands where the value of the one before it should.
 void refuse_options_as_values(const CLI::App& app) {
-    for (const CLI::Option* option : app.get_options())
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_positional()) continue;
         for (const std::string& value : option->results())
-            if (value.starts_with("--") && app.get_option_no_throw(value))
+            if (value.starts_with('-') && app.get_option_no_throw(value))
                 throw Error(ErrorKind::usage,
                             {fmt::format("its value is missing before {}", value), option->get_name(),
                              fmt::format("{} {}", option->get_name(), option->get_type_name())});
+    }
 }
 
 } // namespace

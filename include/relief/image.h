@@ -52,8 +52,8 @@ struct Texture {
     /// What in the file marks the values as colours ("sRGB chunk"), kRenderedTag: as a picture of Relief's
     /// own; empty: nothing.
     std::string colour_tag;
-    /// Values that all texels have, row by row, and 4 - stride more, so that four can be read from each texel
-    /// on.
+    /// Values that all texels have, row by row, and 4 - stride zeros, so that four can be read from each
+    /// texel on.
     size_t value_count() const { return size_t(stride) * width * height + (4 - stride); }
     /// Where the values of the texel in column x and row y begin.
     size_t find_texel(size_t x, size_t y) const { return stride * (y * width + x); }

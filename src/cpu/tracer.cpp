@@ -25,6 +25,9 @@ namespace {
 /// One batch of a kind in so many is timed inside of patches; the clock would cost too much in all.
 constexpr uint64_t kTimedBatchInterval = 32;
 
+/// Of the memory for trees so much is lost around them and in between.
+constexpr size_t kLostShare = 8;
+
 /// With fewer rays, or less room for trees, the order of rays is not worth its time.
 constexpr size_t kLeastOrdered = 4096, kLeastOrderedRoom = size_t(4) << 20;
 
@@ -104,6 +107,7 @@ struct Tracer::Implementation {
                 most_tree_bytes +=
                     surface.quads.size() * count_tree_bytes(uint32_t(view.instances[k].levels->max_level()));
         }
+        most_tree_bytes += most_tree_bytes / kLostShare;
     }
 
     void add_casts(Statistics& statistics) const {
@@ -266,7 +270,7 @@ bool Tracer::ordered_hits(std::span<const TraceRay> rays, std::span<TraceHit> hi
         Batch batch(self, query == OrderedQuery::any ? 1 : 0, count, mask);
         work(batch.view, batch.context);
     };
-    return trace_ordered({*self.kernels, self.view, run, query, rays, room}, hits);
+    return trace_ordered({*self.kernels, self.view, run, query, rays, room - room / kLostShare}, hits);
 }
 
 void Tracer::continued_hits(std::span<const TraceRay> rays, std::span<TraceHit> hits, int depth) const {

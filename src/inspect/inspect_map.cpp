@@ -38,8 +38,7 @@ Fact describe_filter(const Displacement& map) {
     if (map.filter == MapFilter::bspline && !map.dequantize)
         return {"filter", "bspline: the texels are the coefficients", {{"", 0, "bytes"}}};
     double bytes = 0;
-    for (const MapTile& tile : map.tiles)
-        bytes += double(tile.texture->width) * tile.texture->height * 4 * sizeof(float);
+    for (const MapTile& tile : map.tiles) bytes += double(tile.texture->value_count()) * sizeof(float);
     return {"filter",
             fmt::format("{}{}: coefficients of 32-bit floats in place of the texels, {:.0f} bytes", name,
                         map.dequantize ? ", dequantised" : "", bytes),

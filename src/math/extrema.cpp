@@ -29,7 +29,7 @@ template <size_t value_count, class Value, class Extend>
 HWY_INLINE void visit_values(const TexelRows<Value>& texels, Extend extend) {
     const size_t count = texels.channels * texels.columns;
     for (size_t y = 0; y < texels.rows; ++y) {
-        const Value* row = texels.first + y * texels.stride;
+        const Value* row = texels.first + y * texels.row_stride;
         size_t k = 0;
         for (; k + value_count <= count; k += value_count) extend(row + k);
         if (k < count) extend(row + count - value_count);

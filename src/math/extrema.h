@@ -7,10 +7,10 @@
 
 namespace relief {
 
-/// columns x rows texels of `channels` values, which are 4, 3 or 1; rows are `stride` values apart.
+/// columns x rows texels of `channels` values, which are 4, 3 or 1; rows are `row_stride` values apart.
 template <class Value> struct TexelRows {
     const Value* first;
-    size_t channels, stride, columns, rows; ///< columns and rows are > 0
+    size_t channels, row_stride, columns, rows; ///< columns and rows are > 0
 };
 
 /// Of the first three channels; those that texels do not have are 0.

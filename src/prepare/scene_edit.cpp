@@ -34,7 +34,7 @@ void check_rectangle(const MapEdit& edit, const Texture& map) {
     const Texture& texels = edit.texels;
     if (!is_complete(texels))
         refuse(edit, "the rectangle holds no texels, or not as many as its size says",
-               "give stride x width x height values, and 4 - stride more");
+               "give stride x width x height values, and 4 - stride zeros");
     if (uint64_t(edit.x) + texels.width > map.width || uint64_t(edit.y) + texels.height > map.height)
         refuse(edit,
                fmt::format("{} x {} texels at ({}, {}) leave the map of {} x {}", texels.width, texels.height,

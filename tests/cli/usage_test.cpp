@@ -113,6 +113,7 @@ TEST_F(Usage, an_option_without_its_value_says_what_is_missing) {
                    "--vdm: its value is missing before --size\nhint: --vdm MAP\n");
     expect_refused({"render", "plane.obj", "--vdm", "--denoise"},
                    "--vdm: its value is missing before --denoise");
+    expect_refused({"render", "plane.obj", "--vdm", "-o", "x.png"}, "--vdm: its value is missing before -o");
 }
 
 TEST_F(Usage, an_unknown_preset_is_wrong_usage_on_a_command_line_and_bad_input_in_a_file) {

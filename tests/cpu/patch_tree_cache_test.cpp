@@ -137,6 +137,28 @@ TEST(PatchTreeCacheLimits, many_small_trees_find_slots_while_there_is_room) {
     EXPECT_GT(count_rebuilt(0), 500u) << "a slot for 4096 bytes";
 }
 
+/// Neighbours in memory make way together.
+TEST(PatchTreeCacheLimits, a_large_tree_finds_room_in_a_cache_full_of_small_ones) {
+    RenderSettings settings;
+    const auto prepared = prepare_fine_torus(settings);
+    constexpr size_t kBytes = size_t(1) << 20;
+    cpu::PatchTreeCache cache({kBytes, kBytes}, cpu::find_kernels(Isa::best)->build_tree);
+    cpu::TraceContext& context = cache.acquire();
+    const auto find = [&](uint32_t patch, uint32_t surface, uint32_t level) {
+        cache.refresh(context);
+        cache.find_or_build_tree(context, prepared->surfaces[0],
+                                 {surface, patch, 0, scalar::pack_uniform_level(level)});
+    };
+    for (uint32_t k = 0; k < 20000; ++k) {
+        find(k % 50, k / 50 % 100, 3 + k % 2);
+        for (uint32_t look = 0; k % 100 == 99 && look < 6; ++look) find(k % 50, k / 50, cpu::kTileLevel);
+    }
+    const cpu::TraceCounters counters = cache.sum_counters();
+    EXPECT_GT(counters.built_at_level[3], 9000u) << "small ones come and go";
+    EXPECT_LT(counters.built_at_level[cpu::kTileLevel], 350u) << "of 1200 look-ups for 200 trees";
+    cache.release(context);
+}
+
 /// Look-ups go on to the next slot without a look at the tree of another key.
 TEST(PatchTreeSlot, holds_a_tree_beside_bits_of_its_hash) {
     cpu::CachedTree tree;

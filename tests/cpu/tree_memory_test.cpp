@@ -26,13 +26,15 @@ bool is_whole(const Block& block) {
     return std::all_of(block.memory, block.memory + block.bytes, [&](uint8_t x) { return x == block.value; });
 }
 
+void free_one(cpu::TreeMemory& memory, void* block) { memory.free({&block, 1}); }
+
 /// The most bytes that one block can have, to 64.
 size_t find_largest(cpu::TreeMemory& memory) {
     size_t fits = 0;
     for (size_t step = kBytes; step >= 64; step /= 2) {
         void* block = memory.allocate(fits + step);
         if (!block) continue;
-        memory.free(block);
+        memory.free({&block, 1});
         fits += step;
     }
     return fits;
@@ -55,11 +57,12 @@ bool keeps_blocks(cpu::TreeMemory& memory, uint32_t seed, int rounds) {
         for (uint32_t k = taken ? random() % 2 : 1 + random() % 8; k > 0 && !blocks.empty(); --k) {
             std::swap(blocks[random() % blocks.size()], blocks.back());
             are_whole = are_whole && is_whole(blocks.back());
-            memory.free(blocks.back().memory);
+            free_one(memory, blocks.back().memory);
             blocks.pop_back();
         }
     }
-    for (const Block& block : blocks) are_whole = are_whole && is_whole(block), memory.free(block.memory);
+    for (const Block& block : blocks)
+        are_whole = are_whole && is_whole(block), free_one(memory, block.memory);
     return are_whole;
 }
 
@@ -89,9 +92,30 @@ TEST(TreeMemory, reuses_a_block_for_one_of_its_size) {
     std::vector<void*> blocks;
     while (void* block = memory.allocate(16600)) blocks.push_back(block);
     ASSERT_GT(blocks.size(), 60u);
-    for (size_t k = 0; k < blocks.size(); k += 2) memory.free(blocks[k]);
+    for (size_t k = 0; k < blocks.size(); k += 2) free_one(memory, blocks[k]);
     for (size_t k = 0; k < blocks.size(); k += 2) EXPECT_NE(memory.allocate(16600), nullptr);
     EXPECT_EQ(memory.allocate(16600), nullptr);
+}
+
+TEST(TreeMemory, tells_the_owners_of_neighbours_that_would_make_room) {
+    cpu::TreeMemory memory;
+    ASSERT_TRUE(memory.add(kBytes));
+    std::vector<void*> blocks;
+    while (void* block = memory.allocate(1024 - 64)) {
+        if (blocks.size() != 5) memory.set_owner(block, uint32_t(blocks.size()));
+        blocks.push_back(block);
+    }
+    std::vector<uint32_t> owners;
+    ASSERT_TRUE(memory.find_owners(blocks[10], 4000, owners));
+    EXPECT_EQ(owners, (std::vector<uint32_t>{10, 11, 12, 13}));
+    owners.clear();
+    ASSERT_TRUE(memory.find_owners(blocks[3], 4000, owners));
+    EXPECT_EQ(owners, (std::vector<uint32_t>{6, 7, 8, 9})) << "the fifth has no owner";
+    owners.clear();
+    EXPECT_FALSE(memory.find_owners(blocks[blocks.size() - 3], 4000, owners)) << "the end is near";
+    EXPECT_TRUE(owners.empty());
+    for (size_t k = 6; k < 10; ++k) free_one(memory, blocks[k]);
+    EXPECT_NE(memory.allocate(4000), nullptr);
 }
 
 TEST(TreeMemory, serves_many_threads) {

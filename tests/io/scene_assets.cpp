@@ -48,6 +48,11 @@ TEST_F(SceneFiles, assets_in_memory_make_the_scene_of_their_files) {
     EXPECT_EQ(made.environment->texture->floats, filed.environment->texture->floats);
     EXPECT_EQ(made.warnings, filed.warnings);
     EXPECT_EQ(made.hash, parse_scene_text(kText, folder_, assets).hash);
+    SceneAssets broken = assets;
+    auto paint = std::make_shared<Texture>(*assets.textures["paint"]);
+    paint->stride = 1;
+    broken.textures["paint"] = paint;
+    EXPECT_THROW(parse_scene_text(kText, folder_, broken), Error);
     assets.meshes["quad"].positions[0].x += 1;
     EXPECT_NE(made.hash, parse_scene_text(kText, folder_, assets).hash);
 }

@@ -33,7 +33,11 @@ TEST_F(SceneFiles, broken_json_says_what_may_be_wrong) {
     EXPECT_HAS(error_of(R"({"materials": {"a": {"base_color": [1 2 3]}}})"), "a comma may be missing");
     EXPECT_HAS(error_of(R"({"version": 1, })"), "a comma too many before it");
     EXPECT_HAS(error_of(R"({version: 1})"), "a key without quotes");
-    EXPECT_HAS(error_of(R"({"version": 1)"), "a bracket is not closed");
+    for (const char* cut : {R"({"version": 1)", R"({"version": 1,)", "{", ""})
+        EXPECT_HAS(error_of(cut), "is a bracket not closed?") << cut;
+    EXPECT_HAS(error_of(R"({"version" 1})"), "a colon is missing before it");
+    EXPECT_HAS(error_of(R"({"camera": {"from": [1, 2, ]}})"), "a comma too many before it");
+    EXPECT_HAS(error_of(R"({"camera": [[1] [2]]})"), "a comma may be missing before it");
 }
 
 TEST_F(SceneFiles, every_field_is_read) {

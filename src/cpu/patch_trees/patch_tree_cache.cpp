@@ -74,7 +74,8 @@ PatchTreeCache::PatchTreeCache(CacheLimits limits, BuildTreeFunction build_tree)
     }
     const auto without_table = [&](size_t bytes) { return bytes - std::min(bytes, table_bytes()); };
     cap_bytes_ = without_table(limits.cap_bytes), most_bytes_ = without_table(limits.most_bytes);
-    while (!memory_.add(cap_bytes_)) cap_bytes_ = cap_bytes_ / 2; // where the system sets a limit
+    while (!memory_.add(cap_bytes_))
+        most_bytes_ = cap_bytes_ = cap_bytes_ / 2; // where the system sets a limit
 }
 
 PatchTreeCache::~PatchTreeCache() {
@@ -164,6 +165,7 @@ PatchTree* PatchTreeCache::make_tree(TraceContext& context, const Surface& surfa
     const int level = levels.patch - depth;
     const size_t bytes = PatchTree::size_bytes(level);
     void* memory = allocate(context, bytes);
+    BlockGuard guard{*this, memory, TreeMemory::block_bytes(bytes), context.owns_trees};
     PatchTree* tree = new (memory ? memory : context.tree_scratch.get()) PatchTree;
     tree->key = key;
     tree->byte_count = uint32_t(bytes);
@@ -171,6 +173,7 @@ PatchTree* PatchTreeCache::make_tree(TraceContext& context, const Surface& surfa
     tree->cell_x = (key.tile & ((1u << depth) - 1)) << kTileLevel;
     tree->cell_y = (key.tile >> depth) << kTileLevel;
     build_tree_(surface, levels, *tree);
+    guard.memory = nullptr;
     ++context.counters.built;
     ++context.counters.built_at_level[level];
     return tree;
@@ -186,17 +189,20 @@ TileDirectory* PatchTreeCache::make_directory(TraceContext& context, const Surfa
         context.directory_scratch.reset(allocate_aligned(bytes));
         context.directory_scratch_bytes = bytes;
     }
+    BlockGuard guard{*this, memory, TreeMemory::block_bytes(bytes), context.owns_trees};
     TileDirectory* directory = new (memory ? memory : context.directory_scratch.get()) TileDirectory;
     directory->key = key;
     directory->byte_count = uint32_t(bytes);
     directory->depth = depth;
     build_tile_directory(surface, levels, *directory);
+    guard.memory = nullptr;
     return directory;
 }
 
 void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
     if (context.owns_trees) {
-        note_peak(allocated_.fetch_add(bytes) + bytes);
+        const size_t taken = TreeMemory::block_bytes(bytes);
+        note_peak(allocated_.fetch_add(taken) + taken);
         return allocate_aligned(bytes);
     }
     if (slot_count_ == 0) return nullptr;
@@ -208,7 +214,10 @@ void* PatchTreeCache::allocate(TraceContext& context, size_t bytes) {
         // Unlinked entries become free when other workers move on; more would only empty the table.
         if (!memory && retired_.load() < find_reserve(bytes)) evict(context, bytes);
     }
-    if (memory) note_peak(allocated_.fetch_add(bytes) + bytes);
+    if (memory) {
+        const size_t taken = TreeMemory::block_bytes(bytes);
+        note_peak(allocated_.fetch_add(taken) + taken);
+    }
     return memory;
 }
 
@@ -225,7 +234,7 @@ PatchTreeCache::OwnedTrees::OwnedTrees(PatchTreeCache& cache, TraceContext& cont
 PatchTreeCache::OwnedTrees::~OwnedTrees() {
     for (CachedTree* tree : context_.owned) {
         context_.recent.place(tree->key).epoch = 0;
-        cache_.allocated_.fetch_sub(tree->byte_count);
+        cache_.allocated_.fetch_sub(TreeMemory::block_bytes(tree->byte_count));
         std::free(static_cast<void*>(tree));
     }
     context_.owned.clear();
@@ -251,16 +260,20 @@ void PatchTreeCache::offer(TraceContext& context, CachedTree* tree) {
     const TreeSlot slot(tree, home);
     for (size_t probe = 0; probe < kProbeCount; ++probe) {
         TreeSlot expected;
-        if (slots_[(home + probe) & (slot_count_ - 1)].compare_exchange_strong(expected, slot)) return;
+        const size_t number = (home + probe) & (slot_count_ - 1);
+        TreeMemory::set_owner(tree, uint32_t(number)); // before others see the tree
+        if (slots_[number].compare_exchange_strong(expected, slot)) return;
     }
     // Every slot of this key is taken: the first one makes way.
+    TreeMemory::set_owner(tree, uint32_t(home & (slot_count_ - 1)));
     if (CachedTree* previous = slots_[home & (slot_count_ - 1)].exchange(slot).tree())
         retire(context, previous);
 }
 
 void PatchTreeCache::retire(TraceContext& context, CachedTree* tree) {
     given_up_.add(hash_key(tree->key));
-    retired_.fetch_add(tree->byte_count);
+    retired_.fetch_add(TreeMemory::block_bytes(tree->byte_count));
+    TreeMemory::set_owner(tree, TreeMemory::kLeaving);
     context.retired.push_back({tree, epoch_.fetch_add(1)});
 }
 
@@ -277,33 +290,48 @@ size_t PatchTreeCache::find_room() const {
 
 /// Raises the cap if trees are built again and memory is available; true if there is more room now.
 bool PatchTreeCache::grow() {
-    size_t cap = cap_bytes_.load();
-    if (cap >= most_bytes_ || rebuilt_bytes_.load(std::memory_order_relaxed) < cap / 4) return false;
-    const size_t wanted = std::min(2 * cap, most_bytes_);
-    if (available_memory_bytes() / 2 < wanted - cap) {
-        rebuilt_bytes_.store(0); // looks again after as many builds
+    if (rebuilt_bytes_.load(std::memory_order_relaxed) < cap_bytes_.load() / 4) return false;
+    const std::lock_guard lock(grow_mutex_);
+    const size_t cap = cap_bytes_.load(), most = most_bytes_.load();
+    if (cap >= most) return false;
+    if (rebuilt_bytes_.exchange(0) < cap / 4) return true; // another worker was first
+    const size_t wanted = std::min(2 * cap, most);
+    if (available_memory_bytes() / 2 < wanted - cap) return false; // looks again after as many builds
+    if (!memory_.add(wanted - cap)) {
+        most_bytes_ = cap;
         return false;
     }
-    if (cap_bytes_.compare_exchange_strong(cap, wanted)) {
-        rebuilt_bytes_.store(0);
-        if (!memory_.add(wanted - cap)) return false;
-    }
+    cap_bytes_ = wanted;
     return true;
 }
 
+/// Takes out what the slot holds; returns its bytes.
+size_t PatchTreeCache::unlink(TraceContext& context, uint32_t slot) {
+    TreeSlot held = slots_[slot].load();
+    CachedTree* tree = held.tree();
+    if (!tree) return 0;
+    const size_t bytes = TreeMemory::block_bytes(tree->byte_count);
+    if (!slots_[slot].compare_exchange_strong(held, TreeSlot())) return 0;
+    retire(context, tree);
+    return bytes;
+}
+
+/// First neighbours in memory, so that there will be room for `bytes` in one place; then others.
 void PatchTreeCache::evict(TraceContext& context, size_t bytes) {
     const size_t target = find_reserve(bytes); // and no endless search
     const size_t step_count = std::min(2 * slot_count_, kLongestSearch);
     size_t unlinked = 0;
+    bool has_run = false;
+    std::vector<uint32_t> neighbours;
     for (size_t step = 0; step < step_count && unlinked < target; ++step) {
-        std::atomic<TreeSlot>& slot = slots_[hand_.fetch_add(1) & (slot_count_ - 1)];
-        TreeSlot held = slot.load();
-        CachedTree* tree = held.tree();
+        const auto number = uint32_t(hand_.fetch_add(1) & (slot_count_ - 1));
+        CachedTree* tree = slots_[number].load().tree();
         if (!tree || tree->is_recent.exchange(0)) continue;
-        const size_t tree_bytes = tree->byte_count;
-        if (!slot.compare_exchange_strong(held, TreeSlot())) continue;
-        retire(context, tree);
-        unlinked += tree_bytes;
+        if (!has_run && memory_.find_owners(tree, bytes, neighbours)) {
+            has_run = true;
+            for (const uint32_t neighbour : neighbours) unlinked += unlink(context, neighbour);
+        }
+        unlinked += unlink(context, number);
     }
 }
 
@@ -322,17 +350,31 @@ void PatchTreeCache::free_retired(TraceContext& context) {
 
 void PatchTreeCache::free_older(TraceContext& context, uint64_t epoch) {
     const auto is_free = [&](const TraceContext::Retired& retired) { return retired.epoch < epoch; };
+    size_t bytes = 0;
+    context.freed.clear();
     for (const TraceContext::Retired& retired : context.retired) {
         if (!is_free(retired)) continue;
-        retired_.fetch_sub(retired.tree->byte_count);
-        free_tree(retired.tree);
+        bytes += TreeMemory::block_bytes(retired.tree->byte_count);
+        context.freed.push_back(retired.tree);
     }
+    memory_.free(context.freed);
+    retired_.fetch_sub(bytes), allocated_.fetch_sub(bytes);
     std::erase_if(context.retired, is_free);
 }
 
 void PatchTreeCache::free_tree(CachedTree* tree) {
-    allocated_.fetch_sub(tree->byte_count);
-    memory_.free(tree);
+    allocated_.fetch_sub(TreeMemory::block_bytes(tree->byte_count));
+    void* const block = tree;
+    memory_.free({&block, 1});
+}
+
+PatchTreeCache::BlockGuard::~BlockGuard() {
+    if (!memory) return;
+    if (is_owned)
+        std::free(memory);
+    else
+        cache.memory_.free({&memory, 1});
+    cache.allocated_.fetch_sub(taken);
 }
 
 TraceCounters PatchTreeCache::sum_counters() const {

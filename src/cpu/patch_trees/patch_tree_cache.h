@@ -1,9 +1,9 @@
 // Patch trees kept between rays, batches, samples and bounces, under a byte cap.
 //
-// Traversals take no lock: a look-up reads a few slots of a fixed table, a miss builds privately and
-// publishes by compare-and-swap; what the clock hand evicts is unlinked, and freed when no worker can hold it
-// (epoch-based reclamation, Fraser 2004, section 5.2.3). Beyond the cap a tree lives in scratch memory for
-// one visit. The image never depends on any of this.
+// Look-ups take no lock: they read a few slots of a fixed table. A miss takes memory, under a lock, builds
+// privately and publishes by compare-and-swap; what the clock hand evicts is unlinked, and freed when no
+// worker can hold it (epoch-based reclamation, Fraser 2004, section 5.2.3). Beyond the cap a tree lives in
+// scratch memory for one visit. The image never depends on any of this.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "cpu/patch_trees/given_up_trees.h"
@@ -72,6 +73,7 @@ struct TraceContext {
         uint64_t epoch;
     };
     std::vector<Retired> retired;
+    std::vector<void*> freed; ///< memory of free_older
     RecentTrees recent;
     bool owns_trees = false;        ///< see PatchTreeCache::OwnedTrees
     std::vector<CachedTree*> owned; ///< then, the trees
@@ -142,7 +144,7 @@ class PatchTreeCache {
                                                  const TreeKey& key) {
         return static_cast<const TileDirectory&>(find_or_build(context, surface, key));
     }
-    /// Bytes held now and at most so far, table included.
+    /// Bytes held now and at most so far, with what goes around trees and the table.
     size_t byte_count() const { return allocated_.load() + table_bytes(); }
     size_t peak_byte_count() const { return peak_.load() + table_bytes(); }
     size_t cap_byte_count() const { return cap_bytes_.load(); }
@@ -171,6 +173,15 @@ class PatchTreeCache {
     void free_retired(TraceContext& context);
     void free_older(TraceContext& context, uint64_t epoch);
     void free_tree(CachedTree* tree);
+    size_t unlink(TraceContext& context, uint32_t slot);
+    /// Gives a block back whose tree could not be built.
+    struct BlockGuard {
+        PatchTreeCache& cache;
+        void* memory; ///< null: there is none, or the tree is built
+        size_t taken;
+        bool is_owned;
+        ~BlockGuard();
+    };
     void note_rebuild(TraceContext& context, const CachedTree& tree);
     bool grow();
     void note_peak(size_t now);
@@ -180,8 +191,9 @@ class PatchTreeCache {
     size_t find_reserve(size_t bytes) const { return std::max(bytes, cap_bytes_.load() / 64); }
     size_t table_bytes() const { return slot_count_ * sizeof(std::atomic<TreeSlot>); }
 
-    std::atomic<size_t> cap_bytes_; ///< without the table
-    size_t most_bytes_;             ///< likewise
+    std::atomic<size_t> cap_bytes_;  ///< without the table
+    std::atomic<size_t> most_bytes_; ///< likewise
+    std::mutex grow_mutex_;
     TreeMemory memory_;
     GivenUpTrees given_up_;
     std::atomic<size_t> rebuilt_bytes_{0}; ///< since the cap was set

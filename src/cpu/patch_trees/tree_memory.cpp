@@ -10,7 +10,6 @@ namespace relief::cpu {
 
 namespace {
 
-constexpr size_t kUnit = 64;      ///< sizes of blocks are multiples of it
 constexpr int kMostLookedAt = 16; ///< blocks of a list that are looked at, since some of them are too small
 
 /// So that address sanitizers see who reads a tree that is gone.
@@ -30,21 +29,25 @@ TreeMemory::~TreeMemory() {
 bool TreeMemory::add(size_t bytes) {
     bytes = bytes / kUnit * kUnit;
     if (bytes < 3 * sizeof(Head)) return true; // no tree would fit
+    const std::lock_guard lock(mutex_);
+    regions_.reserve(regions_.size() + 1);
     void* memory =
         mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (memory == MAP_FAILED) return false;
-    const std::lock_guard lock(mutex_);
+    madvise(memory, bytes, MADV_NOHUGEPAGE); // they bring nothing, and a few trees would take many
     regions_.push_back({memory, bytes});
     // Blocks end before a head that is never free.
-    Head* block = new (memory) Head{.bytes = bytes - sizeof(Head)};
-    new (find_next(block)) Head{.bytes = sizeof(Head), .bytes_before = block->bytes};
+    Head* block = new (memory) Head;
+    block->bytes = bytes - sizeof(Head);
+    Head* end = new (find_next(block)) Head;
+    end->bytes = sizeof(Head), end->bytes_before = block->bytes;
     link(block);
     forbid(block, sizeof(Head), block->bytes);
     return true;
 }
 
 void* TreeMemory::allocate(size_t bytes) {
-    bytes = sizeof(Head) + (bytes + kUnit - 1) / kUnit * kUnit;
+    bytes = block_bytes(bytes);
     const std::lock_guard lock(mutex_);
     Head* block = find_free(bytes);
     if (!block) return nullptr;
@@ -54,11 +57,36 @@ void* TreeMemory::allocate(size_t bytes) {
     return block + 1;
 }
 
-void TreeMemory::free(void* memory) {
+void TreeMemory::free(std::span<void* const> blocks) {
     const std::lock_guard lock(mutex_);
-    Head* block = static_cast<Head*>(memory) - 1;
-    forbid(block, sizeof(Head), block->bytes);
-    link(join(block));
+    for (void* memory : blocks) {
+        Head* block = static_cast<Head*>(memory) - 1;
+        block->owner.store(kNoOwner, std::memory_order_relaxed);
+        forbid(block, sizeof(Head), block->bytes);
+        link(join(block));
+    }
+}
+
+void TreeMemory::set_owner(void* block, uint32_t owner) {
+    (static_cast<Head*>(block) - 1)->owner.store(owner, std::memory_order_relaxed);
+}
+
+bool TreeMemory::find_owners(void* block, size_t bytes, std::vector<uint32_t>& owners) {
+    constexpr int kLongestWay = 256; // blocks
+    bytes = block_bytes(bytes);
+    const size_t before = owners.size();
+    const std::lock_guard lock(mutex_);
+    size_t found = 0;
+    Head* at = static_cast<Head*>(block) - 1;
+    for (int step = 0; step < kLongestWay && found < bytes; ++step, at = find_next(at)) {
+        if (at->bytes == sizeof(Head)) break; // the end
+        const uint32_t owner = at->owner.load(std::memory_order_relaxed);
+        found += at->bytes;
+        if (!at->is_free && owner != kNoOwner && owner != kLeaving) owners.push_back(owner);
+        if (!at->is_free && owner == kNoOwner) found = 0, owners.resize(before); // nobody gives that back
+    }
+    if (found < bytes) owners.resize(before);
+    return found >= bytes;
 }
 
 /// Four lists for each power of two.
@@ -113,7 +141,8 @@ void TreeMemory::cut(Head* block, size_t bytes) {
     block->bytes = bytes;
     Head* after = find_next(block);
     ASAN_UNPOISON_MEMORY_REGION(after, sizeof(Head));
-    new (after) Head{.bytes = rest, .bytes_before = bytes};
+    after = new (after) Head;
+    after->bytes = rest, after->bytes_before = bytes;
     find_next(after)->bytes_before = rest;
     link(after);
 }

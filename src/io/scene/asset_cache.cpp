@@ -72,7 +72,8 @@ void keep_first(Texture& texture) {
         if (values.empty()) return;
         size_t next = 0;
         visit_texels(texture, [&](size_t k) { values[next++] = values[k]; });
-        values.resize(next + 3);
+        values.resize(next);
+        values.resize(next + 3); // zeros
         values.shrink_to_fit();
     };
     keep(texture.floats), keep(texture.halves);
@@ -149,6 +150,9 @@ std::shared_ptr<const Texture> AssetCache::find_given(const std::string& file) c
 std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use, uint32_t channel,
                                                 const std::string& space) {
     const std::shared_ptr<const Texture> given = find_given(file);
+    if (given && !is_complete(*given))
+        throw Error(ErrorKind::bad_input, {"holds another number of texels than its size and its stride say",
+                                           file, "give value_count() values"});
     if (given && use == TextureUse::data && channel == 0) return given;
     const fs::path path = given ? fs::path(file) : resolve(file);
     const TextureKey key(path.string(), use, channel, space);

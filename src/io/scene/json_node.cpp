@@ -99,11 +99,13 @@ class DocumentBuilder {
 /// By what the parser has met in place of what.
 std::string hint_at_syntax(std::string_view error) {
     const auto has = [&](std::string_view part) { return error.find(part) != std::string_view::npos; };
-    if (has("unexpected string literal; expected '}'") || has("unexpected '{'; expected ']'") ||
-        has("literal; expected ']'"))
-        return "a comma may be missing before it";
-    if (has("expected string literal")) return "a comma too many before it, or a key without quotes";
-    if (has("unexpected end of input")) return "a bracket is not closed";
+    if (has("unexpected end of input")) return "it ends too early: is a bracket not closed?";
+    if (has("expected ':'")) return "a colon is missing before it";
+    if (has("unexpected ']'") || has("unexpected '}'"))
+        return "a comma too many before it, or another bracket";
+    if (has("; expected string literal")) return "a comma too many before it, or a key without quotes";
+    const bool is_value = has("literal; expected") || has("unexpected '{'") || has("unexpected '['");
+    if (is_value && (has("expected ']'") || has("expected '}'"))) return "a comma may be missing before it";
     return "";
 }
 
