@@ -31,10 +31,10 @@ void check_alike(const Texture& a, const Texture& b) {
     if (a.width != b.width || a.height != b.height)
         refuse(a.file, b.file,
                fmt::format("{} x {} and {} x {} pixels", a.width, a.height, b.width, b.height), kHint);
-    if (a.stride != b.stride)
-        refuse(a.file, b.file, fmt::format("{} and {} values a texel", a.stride, b.stride), kHint);
     if (a.channel_count != b.channel_count)
         refuse(a.file, b.file, fmt::format("{} and {} channels", a.channel_count, b.channel_count), kHint);
+    if (a.stride != b.stride)
+        refuse(a.file, b.file, fmt::format("{} and {} values a texel", a.stride, b.stride), kHint);
     if (a.source_type != b.source_type && !(is_floating(a) && is_floating(b)))
         refuse(a.file, b.file, "samples of two kinds", kHint);
 }
