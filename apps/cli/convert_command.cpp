@@ -16,6 +16,7 @@
 #include "common/inputs.h"
 #include "common/map_options.h"
 #include "common/mesh_reader.h"
+#include "common/option_names.h"
 #include "common/progress.h"
 #include "common/values.h"
 #include "relief/convert.h"
@@ -52,7 +53,8 @@ void print_warnings(const ConvertOptions& options, const std::vector<std::string
                     WorkProgress* progress = nullptr) {
     if (options.progress.is_quiet || warnings.empty()) return;
     if (progress) progress->end_line();
-    for (const std::string& warning : warnings) fmt::print(stderr, "relief: warning: {}\n", warning);
+    for (const std::string& warning : warnings)
+        fmt::print(stderr, "relief: warning: {}\n", name_options(warning));
 }
 
 std::string format_factors(const Vec3f& v) {
@@ -61,6 +63,10 @@ std::string format_factors(const Vec3f& v) {
 
 /// How the reading program must interpret the new map.
 std::string describe(const Displacement& map) {
+    const char* const flip = map.flip_v ? " --flip-v" : "";
+    if (map.type == DisplacementType::height)
+        return fmt::format("--type height --midlevel {:g} --vdm-scale {:g}{}", map.midlevel.x, map.scale.x,
+                           flip);
     const char* space = map.space == DisplacementSpace::tangent  ? "tangent"
                         : map.space == DisplacementSpace::object ? "object"
                                                                  : "world";
@@ -71,7 +77,7 @@ std::string describe(const Displacement& map) {
         frames += " --lengths relative";
     return fmt::format("--space {} --axes {}{} --midlevel {} --vdm-scale {}{}", space,
                        format_map_axes(map.axes, map.space), frames, format_factors(map.midlevel),
-                       format_factors(map.scale), map.flip_v ? " --flip-v" : "");
+                       format_factors(map.scale), flip);
 }
 
 /// Rounds up to two significant digits.

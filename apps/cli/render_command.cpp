@@ -71,8 +71,7 @@ void tell_of_idle_noise(const RenderOptions& options, const ImageSettings& image
     static bool is_told = false;      // of all frames of a command
     if (std::exchange(is_told, true)) return;
     if (image.noise > 0 && image.spp <= kLeastSamples && !options.progress.is_quiet)
-        fmt::print(stderr,
-                   "relief: warning: --noise is judged after {} samples, and --spp {} ends there or before\n",
+        fmt::print(stderr, "relief: warning: --noise is judged after {} samples, and pixels get {} at most\n",
                    kLeastSamples, image.spp);
 }
 

@@ -105,8 +105,8 @@ void find_channel_mistakes(const Displacement& map, MapMeaning meaning, const Ma
     }
     if (is_height(map, meaning)) return;
     if (statistics.channel_count < 3)
-        add_warning(findings, "W-1CH", "{} channel(s): a height map, not vectors; use type height",
-                    statistics.channel_count);
+        add_warning(findings, "W-1CH", "{}: a height map, not vectors; use type height",
+                    statistics.channel_count == 1 ? "one channel" : "two channels");
     else if (statistics.is_gray && statistics.bad_count < statistics.texel_count)
         add_warning(findings, "W-GRAY",
                     "R = G = B everywhere: a height map saved as colours, not vectors; use type height (as "

@@ -54,6 +54,21 @@ TEST_F(Convert, integers_take_a_scale_that_fits_and_say_it) {
     EXPECT_FALSE(exists("s.png"));
 }
 
+TEST_F(Convert, a_height_map_stays_one_and_says_so) {
+    Image heights;
+    heights.width = heights.full_width = 2, heights.height = heights.full_height = 1;
+    heights.channels = {"Y"}, heights.pixels = {0.2f, 0.8f};
+    write_image(heights, folder_ / "h.exr");
+    const CommandResult made =
+        run({"convert", "h.exr", "--type", "height", "--midlevel", "0.5", "-o", "h.png"});
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_EQ(made.output, "wrote h.png: --type height --midlevel 0.5 --vdm-scale 0.61\n");
+    const Texture grey = read_texture(folder_ / "h.png");
+    EXPECT_EQ(grey.channel_count, 1u);
+    EXPECT_NEAR(grey.floats[0], 0.5 - 0.3 / 0.61, 1e-4);
+    EXPECT_NEAR(grey.floats[1], 0.5 + 0.3 / 0.61, 1e-4);
+}
+
 TEST_F(Convert, steps_of_integers_are_smoothed_where_that_is_asked_for) {
     Image ramp = read_image(folder_ / "bump.exr");
     const size_t row = size_t(ramp.width) * ramp.channels.size();

@@ -22,7 +22,7 @@ template <class Value> using FillRow = std::function<void(int y, std::vector<Val
 /// What the values of a PNG file are. sRGB and linear ones are tagged as such; data are not.
 enum class PngMeaning { srgb, linear, data };
 struct PngKind {
-    int channels = 3; ///< RGB, or 4: RGBA
+    int channels = 3; ///< RGB, 4: RGBA, or 1: grey
     int bits = 8;     ///< of a value; of 16 the high byte comes first
     PngMeaning meaning = PngMeaning::srgb;
 };

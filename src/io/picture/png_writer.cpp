@@ -74,8 +74,10 @@ void set_header(PngStream& stream, int width, int height, const PngKind& kind) {
     // By default no more than a million each.
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_IHDR(png, stream.info(), uint32_t(width), uint32_t(height), kind.bits,
-                 kind.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 kind.channels == 4   ? PNG_COLOR_TYPE_RGB_ALPHA
+                 : kind.channels == 1 ? PNG_COLOR_TYPE_GRAY
+                                      : PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_buffer_size(png, kChunkBytes);
 }
 

@@ -18,11 +18,12 @@ namespace {
 DisplacementType decide_type(const DisplacementRequest& request, const Displacement& map,
                              AssetCache& assets) {
     const uint32_t channels = map.tiles.front().texture->channel_count;
+    const char* const few = channels == 1 ? "one channel" : "two channels";
     if (request.options.type) {
         if (map.type == DisplacementType::vector && channels < 3)
-            assets.warnings().push_back(fmt::format("displacement '{}': a map of {} channel(s) is used as a "
+            assets.warnings().push_back(fmt::format("displacement '{}': a map of {} is used as a "
                                                     "vector map; was \"type\": \"height\" meant?",
-                                                    request.name, channels));
+                                                    request.name, few));
         if (map.type == DisplacementType::height && channels >= 3)
             assets.warnings().push_back(
                 fmt::format("displacement '{}': a height map with {} channels; only the first is used",
@@ -30,9 +31,9 @@ DisplacementType decide_type(const DisplacementRequest& request, const Displacem
         return map.type;
     }
     if (channels >= 3) return DisplacementType::vector;
-    assets.warnings().push_back(fmt::format("displacement '{}': a map of {} channel(s) is taken as a height "
+    assets.warnings().push_back(fmt::format("displacement '{}': a map of {} is taken as a height "
                                             "map; displacement.type = height says so",
-                                            request.name, channels));
+                                            request.name, few));
     return DisplacementType::height;
 }
 

@@ -69,16 +69,17 @@ Texture make_coded(const Texture& texture, MapSamples samples) {
 }
 
 void write_png_map(const Texture& texture, CheckedFile& stream) {
+    const uint32_t channels = texture.channel_count == 1 ? 1 : 3;
     const auto fill_row = [&](int y, std::vector<uint8_t>& row) {
         size_t at = 0;
         for (uint32_t x = 0; x < texture.width; ++x)
-            for (uint32_t c = 0; c < 3; ++c) {
+            for (uint32_t c = 0; c < channels; ++c) {
                 const auto value = uint32_t(std::lround(get_texel(texture, x, uint32_t(y), c) * 65535.0f));
                 row[at++] = uint8_t(value >> 8), row[at++] = uint8_t(value & 0xff);
             }
     };
-    encode_png(int(texture.width), int(texture.height), {.bits = 16, .meaning = PngMeaning::data}, fill_row,
-               stream);
+    encode_png(int(texture.width), int(texture.height),
+               {.channels = int(channels), .bits = 16, .meaning = PngMeaning::data}, fill_row, stream);
 }
 
 void write_tile(const Texture& texture, const std::filesystem::path& file, MapSamples samples) {
