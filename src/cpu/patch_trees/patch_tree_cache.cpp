@@ -357,8 +357,9 @@ void PatchTreeCache::free_older(TraceContext& context, uint64_t epoch) {
         bytes += TreeMemory::block_bytes(retired.tree->byte_count);
         context.freed.push_back(retired.tree);
     }
+    allocated_.fetch_sub(bytes); // before others can take it
     memory_.free(context.freed);
-    retired_.fetch_sub(bytes), allocated_.fetch_sub(bytes);
+    retired_.fetch_sub(bytes);
     std::erase_if(context.retired, is_free);
 }
 
@@ -370,11 +371,11 @@ void PatchTreeCache::free_tree(CachedTree* tree) {
 
 PatchTreeCache::BlockGuard::~BlockGuard() {
     if (!memory) return;
+    cache.allocated_.fetch_sub(taken);
     if (is_owned)
         std::free(memory);
     else
         cache.memory_.free({&memory, 1});
-    cache.allocated_.fetch_sub(taken);
 }
 
 TraceCounters PatchTreeCache::sum_counters() const {
