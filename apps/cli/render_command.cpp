@@ -66,15 +66,6 @@ void tell_of_earlier_samples(const RenderResult& result, const ImageSettings& im
                    most, most);
 }
 
-void tell_of_idle_noise(const RenderOptions& options, const ImageSettings& image) {
-    constexpr int kLeastSamples = 16; // as SamplePlan has it
-    static bool is_told = false;      // of all frames of a command
-    if (std::exchange(is_told, true)) return;
-    if (image.noise > 0 && image.spp <= kLeastSamples && !options.progress.is_quiet)
-        fmt::print(stderr, "relief: warning: --noise is judged after {} samples, and pixels get {} at most\n",
-                   kLeastSamples, image.spp);
-}
-
 /// The scene file of a scene that may move, and the frame that it was loaded at; null: a still one.
 struct Source {
     Shot* shot = nullptr;
@@ -116,7 +107,6 @@ void save_aimed_scene(const RenderOptions& options, const RenderSettings& settin
 int render_scene(const RenderOptions& options, Scene scene, const Source& source, double start) {
     const double load_s = get_seconds() - start;
     const RenderSettings settings = prepare_picture(options, scene);
-    tell_of_idle_noise(options, settings.image);
     if (!options.aim.saved_scene.empty()) save_aimed_scene(options, settings, scene);
     const PendingTimes waiting{start, load_s};
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);

@@ -52,6 +52,10 @@ struct Texture {
     /// What in the file marks the values as colours ("sRGB chunk"), kRenderedTag: as a picture of Relief's
     /// own; empty: nothing.
     std::string colour_tag;
+    /// The least stride for so many channels.
+    static constexpr uint32_t choose_stride(size_t channel_count) {
+        return channel_count == 1 || channel_count == 3 ? uint32_t(channel_count) : 4;
+    }
     /// Values that all texels have, row by row, and 4 - stride zeros, so that four can be read from each
     /// texel on.
     size_t value_count() const { return size_t(stride) * width * height + (4 - stride); }

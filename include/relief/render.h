@@ -73,6 +73,7 @@ struct ImageSettings {
     /// brightness; 95 of 100 are then within 1.25 times that of their mean. In blocks of 8 x 8, after 16
     /// samples each.
     float noise = 0;
+    static constexpr int kLeastNoiseSamples = 16; ///< of a pixel, before noise is judged
     double time_limit_s = 0; ///< above 0: no more samples after so many seconds, but one of each pixel
     int bounces = 4;         ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     /// Above 0: light that a path finds after its first bounce, by a ray towards a light or by chance, adds

@@ -43,7 +43,7 @@ Texture make_texture(nb::handle array, const std::string& name) {
     Texture texture;
     texture.height = uint32_t(given.shape(0)), texture.width = uint32_t(given.shape(1));
     texture.channel_count = uint32_t(given.shape(2));
-    texture.stride = texture.channel_count == 1 || texture.channel_count == 3 ? texture.channel_count : 4;
+    texture.stride = Texture::choose_stride(texture.channel_count);
     texture.file = name;
     constexpr uint16_t kHalfOne = 0x3c00;
     const nb::dlpack::dtype type = given.dtype();

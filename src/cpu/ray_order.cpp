@@ -52,22 +52,28 @@ bool order_by_direction(std::span<const TraceRay> rays, RayOrder& order) {
     return true;
 }
 
+/// `trace` takes rays and where to put what it finds; `found` is in the order of `rays` again.
+template <class Found, class Trace>
+void trace_in_order(std::span<const TraceRay> rays, std::span<Found> found, RayOrder& order,
+                    std::vector<Found>& in_order, const Trace& trace) {
+    if (!order_by_direction(rays, order)) return trace(rays, found);
+    in_order.resize(rays.size());
+    trace(std::span<const TraceRay>(order.rays), std::span(in_order));
+    for (size_t k = 0; k < rays.size(); ++k) found[order.places[k]] = in_order[k];
+}
+
 } // namespace
 
 void closest_scattered_hits(const Tracer& tracer, std::span<const TraceRay> rays, std::span<TraceHit> hits,
                             int depth, RayOrder& order) {
-    if (!order_by_direction(rays, order)) return tracer.closest_hits(rays, hits, depth);
-    order.hits.resize(rays.size());
-    tracer.closest_hits(order.rays, order.hits, depth);
-    for (size_t k = 0; k < rays.size(); ++k) hits[order.places[k]] = order.hits[k];
+    trace_in_order(rays, hits, order, order.hits,
+                   [&](const auto& some, const auto& found) { tracer.closest_hits(some, found, depth); });
 }
 
 void any_scattered_hits(const Tracer& tracer, std::span<const TraceRay> rays, std::span<uint8_t> occluded,
                         int depth, RayOrder& order) {
-    if (!order_by_direction(rays, order)) return tracer.any_hits(rays, occluded, depth);
-    order.occluded.resize(rays.size());
-    tracer.any_hits(order.rays, order.occluded, depth);
-    for (size_t k = 0; k < rays.size(); ++k) occluded[order.places[k]] = order.occluded[k];
+    trace_in_order(rays, occluded, order, order.occluded,
+                   [&](const auto& some, const auto& found) { tracer.any_hits(some, found, depth); });
 }
 
 } // namespace relief::cpu

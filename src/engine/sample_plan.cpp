@@ -11,8 +11,6 @@ namespace relief {
 namespace {
 
 constexpr int kLongestPass = 16; ///< samples a pixel
-/// Before noise is judged. Of fewer samples the variance says little.
-constexpr int kLeastSamples = 16;
 /// Standard errors that ImageSettings::noise is compared with: 95 of 100 values of a normal distribution lie
 /// within 1.96, so that 95 of 100 pixels of a block are closer than 1.25 times the noise to their mean.
 constexpr double kDeviations = 1.96 / 1.25;
@@ -56,7 +54,8 @@ bool SamplePlan::start_pass() {
     };
     while (!is_lacking()) {
         if (target() >= image_.spp) return false;
-        if (image_.noise > 0 && target() >= kLeastSamples && is_end(target())) choose_blocks();
+        if (image_.noise > 0 && target() >= ImageSettings::kLeastNoiseSamples && is_end(target()))
+            choose_blocks();
         film_.passes.target = std::min(find_next_end(target()), image_.spp);
     }
     return true;

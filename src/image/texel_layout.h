@@ -11,16 +11,10 @@ namespace relief {
 
 /// Has one of the strides that textures may have, and as many values as its size says.
 inline bool is_complete(const Texture& texture) {
-    const uint32_t stride = texture.stride;
-    if (stride != 4 && (stride != texture.channel_count || (stride != 3 && stride != 1))) return false;
+    if (texture.stride != 4 && texture.stride != Texture::choose_stride(texture.channel_count)) return false;
     const size_t floats = texture.floats.size(), halves = texture.halves.size();
     return texture.width > 0 && texture.height > 0 && (floats == 0 || halves == 0) &&
            floats + halves == texture.value_count();
-}
-
-/// The stride for so many channels.
-constexpr uint32_t choose_stride(size_t channel_count) {
-    return channel_count == 1 || channel_count == 3 ? uint32_t(channel_count) : 4;
 }
 
 /// Texels of the same kind as `texture`'s, all values 0.

@@ -111,7 +111,8 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
     check_visibility(scene);
     prepared.warnings = std::move(scene.warnings);
     // Before anything else is moved out of the scene.
-    for (std::string& warning : find_scene_warnings(scene)) prepared.warnings.push_back(std::move(warning));
+    for (std::string& warning : find_scene_warnings(scene, settings.image))
+        prepared.warnings.push_back(std::move(warning));
     if (polygons == Polygonal::keep) {
         parts.materials = scene.materials, parts.displacements = scene.displacements;
         parts.users = list_users(scene);

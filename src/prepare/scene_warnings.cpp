@@ -101,8 +101,11 @@ void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
 
 } // namespace
 
-std::vector<std::string> find_scene_warnings(const Scene& scene) {
+std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSettings& image) {
     std::vector<std::string> warnings;
+    if (image.noise > 0 && image.spp <= ImageSettings::kLeastNoiseSamples)
+        warnings.push_back(fmt::format("image.noise is judged after {} samples, and pixels get {} at most",
+                                       ImageSettings::kLeastNoiseSamples, image.spp));
     warn_of_darkness(scene, warnings);
     std::set<std::pair<uint32_t, uint32_t>> pairs;
     std::set<uint32_t> meshes, read_meshes;

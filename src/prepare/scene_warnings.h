@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "relief/render.h"
 #include "relief/scene.h"
 
 namespace relief {
 
-/// Nothing visible or no light; missing tiles; creases that are too fine for their level. Valid scenes only.
-std::vector<std::string> find_scene_warnings(const Scene& scene);
+/// Nothing visible or no light; missing tiles; creases that are too fine for their level; noise that is asked
+/// for and never judged. Valid scenes only.
+std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSettings& image);
 
 } // namespace relief

@@ -46,6 +46,21 @@ TEST(Warnings, name_the_level_that_shows_a_semi_sharp_crease_as_it_is) {
     EXPECT_NE(prepare_with_crease(0.5f, 0, CreaseRule::obey)[0].find("level 1 shows"), std::string::npos);
 }
 
+TEST(Warnings, tell_of_noise_that_is_never_judged) {
+    const auto prepare = [](float noise, int spp) {
+        RenderSettings settings;
+        settings.image.noise = noise, settings.image.spp = spp;
+        Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
+        scene.environment.emplace();
+        scene.objects[0].displacement = kNoIndex, scene.displacements.clear();
+        return prepare_scene(std::move(scene), settings)->warnings;
+    };
+    ASSERT_EQ(prepare(0.1f, 16).size(), 1u);
+    EXPECT_NE(prepare(0.1f, 12)[0].find("pixels get 12 at most"), std::string::npos);
+    EXPECT_TRUE(prepare(0.1f, 17).empty());
+    EXPECT_TRUE(prepare(0, 12).empty());
+}
+
 TEST(Warnings, count_the_faces_without_area_and_name_the_first) {
     Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
     scene.objects[0].displacement = kNoIndex, scene.displacements.clear();

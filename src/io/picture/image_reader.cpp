@@ -50,7 +50,7 @@ Texture read_pixels(PixelSource& source, const std::string& name) {
     texture.width = uint32_t(header.width);
     texture.height = uint32_t(header.height);
     texture.channel_count = uint32_t(channel_count);
-    texture.stride = choose_stride(header.channels.size());
+    texture.stride = Texture::choose_stride(header.channels.size());
     texture.source_type = header.type;
     if (texture.source_type == SampleType::float16) {
         texture.halves = make_texels(texture, kHalfOne);
