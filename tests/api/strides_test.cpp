@@ -68,6 +68,21 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(1u, 3u), testing::Values(SampleType::float16, SampleType::float32),
                      testing::Values(MapFilter::none, MapFilter::mip, MapFilter::cubic)));
 
+/// What a vector map of one channel lacks is 0, not what its neighbours hold.
+TEST(Strides, of_one_serve_as_vectors) {
+    RenderSettings settings = make_session_settings();
+    settings.image.width = 48, settings.image.height = 36;
+    for (const MapFilter filter : {MapFilter::none, MapFilter::cubic}) {
+        Scene wide = make_textured_torus(1, SampleType::float16, filter);
+        wide.displacements[0].type = DisplacementType::vector;
+        for (const Isa isa : machine_isas()) {
+            settings.device.isa = isa;
+            EXPECT_TRUE(render(make_narrow(wide), settings).image.pixels ==
+                        render(wide, settings).image.pixels);
+        }
+    }
+}
+
 TEST(Strides, that_do_not_fit_are_refused) {
     const RenderSettings settings = make_session_settings();
     const Scene scene = make_narrow(make_textured_torus(3, SampleType::float32, MapFilter::none));
