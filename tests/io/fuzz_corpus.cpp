@@ -1,5 +1,5 @@
-// Every input that a fuzzer starts from, through its target: what a target requires holds without libFuzzer as well.
-// A target that finds otherwise ends the process; the last line printed names the input.
+// Every input that a fuzzer starts from, through its target: what a target requires holds without libFuzzer
+// as well. A target that finds otherwise ends the process; the last line printed names the input.
 #include <gtest/gtest.h>
 
 #include <cstdint>
