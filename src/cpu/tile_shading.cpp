@@ -68,9 +68,11 @@ void TileTracer::add_last_emission() {
         points_.resize(hits_.size());
         tracer_.make_surface_points(hits_, points_, scratch_);
         if (has_glass_) draw_random();
-        for (size_t k = 0; k < active_.size(); ++k) {
-            const Vec3f emission = meet_material(k, 0).emission;
-            if (!(emission == Vec3f{})) add_emission(k, emission);
+        for (size_t first = 0; first < active_.size(); first += kBlock) {
+            const size_t count = std::min(kBlock, active_.size() - first);
+            meet_materials(first, count);
+            for (size_t n = 0; n < count; ++n)
+                if (!(materials_[n].emission == Vec3f{})) add_emission(first + n, materials_[n].emission);
         }
     }
     active_.clear();
@@ -180,9 +182,9 @@ size_t TileTracer::shade_block(size_t first, size_t count, size_t next) {
     lights_.complete_weight(lights_drawn_, {lit.data(), lit_count});
     for (size_t n = 0; n < count; ++n) {
         if (depth_ == 0) record_first_hit(first + n, lanes_[n / 16], n % 16);
-        if (!(emissions_[n] == Vec3f{})) add_emission(first + n, emissions_[n]);
+        if (!(materials_[n].emission == Vec3f{})) add_emission(first + n, materials_[n].emission);
         if (path_lights_.looks_for_guides(active_[first + n]))
-            note_guides(first + n, lanes_[n / 16], n % 16, emissions_[n]);
+            note_guides(first + n, lanes_[n / 16], n % 16, materials_[n].emission);
     }
     for (size_t n = 0; n < lit_count; ++n)
         add_shadow_ray(first + lit[n], lanes_[lit[n] / 16], lit[n] % 16, lights_drawn_[lit[n]]);
@@ -224,32 +226,40 @@ float TileTracer::find_lift(size_t k, size_t n) {
                            scratch_.patches);
 }
 
-/// Of the surface that ray k has hit, vertex n of a block, with what glass does to its path.
-PointMaterial TileTracer::meet_material(size_t k, size_t n) {
-    if (is_catcher(k)) return kCatcherMaterial;
-    const PreparedScene& scene = tracer_.scene();
+/// Of the surfaces that rays from `first` on have hit, vertices of a block, with what glass does to their
+/// paths.
+void TileTracer::meet_materials(size_t first, size_t count) {
+    make_point_materials(tracer_.scene(), tracer_.shading_kernels(), {&hits_[first], count},
+                         {&points_[first], count}, {materials_.data(), count});
+    for (size_t n = 0; n < count; ++n)
+        if (is_catcher(first + n))
+            materials_[n] = kCatcherMaterial;
+        else
+            meet_material(first + n, n);
+}
+
+/// Of ray k, vertex n of a block, whose numbers without inputs that have textures are there.
+void TileTracer::meet_material(size_t k, size_t n) {
+    PointMaterial& m = materials_[n];
     const SurfacePoint& point = points_[k];
-    PointMaterial m = make_point_material(scene, hits_[k].instance, point.uv);
     vertex_inputs_.set(n, hits_[k], point.uv, m);
-    if (has_glass_) {
-        Path& path = paths_[active_[k]];
-        const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t,
-                                   vertex_inputs_.glass()};
-        path.throughput =
-            path.throughput * meet_glass(scene.glass, arrival, path.body, m, random_[scalar::kPickPair][k].y);
-    }
-    return m;
+    if (!has_glass_) return;
+    Path& path = paths_[active_[k]];
+    const GlassArrival arrival{dot(point.geometric_normal, rays_[k].direction), hits_[k].t,
+                               vertex_inputs_.glass()};
+    path.throughput = path.throughput * meet_glass(tracer_.scene().glass, arrival, path.body, m,
+                                                   random_[scalar::kPickPair][k].y);
 }
 
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
+    meet_materials(first, count);
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
-        const PointMaterial m = meet_material(k, n);
+        const PointMaterial& m = materials_[n];
         VertexLanes& lanes = lanes_[n / 16];
         const size_t lane = n % 16;
         set_material(m, lane, lanes);
-        emissions_[n] = m.emission;
         set_lane(lights_drawn_[n].direction, lane, lanes.light_direction);
         lanes.light_pdf[lane] = lights_drawn_[n].pdf;
         if (tracer_.scene().has_anisotropy) set_lane(tangents_[k], lane, lanes.tangent);

@@ -72,7 +72,8 @@ class TileTracer {
     void list_wave_samples();
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
-    PointMaterial meet_material(size_t k, size_t n);
+    void meet_materials(size_t first, size_t count);
+    void meet_material(size_t k, size_t n);
     void reflect(size_t first, size_t count);
     float find_lift(size_t k, size_t n);
     bool is_covered(size_t k, float lift);
@@ -125,7 +126,7 @@ class TileTracer {
 
     std::array<VertexLanes, kBlock / 16> lanes_{};
     VertexInputs vertex_inputs_;
-    std::array<Vec3f, kBlock> emissions_;
+    std::array<PointMaterial, kBlock> materials_;
     std::array<LightSet::Receiver, kBlock> receivers_;
     std::array<LightSet::RandomNumbers, kBlock> light_random_;
     std::array<LightSample, kBlock> lights_drawn_;

@@ -1,18 +1,11 @@
 // Bilinear look-ups of colour textures.
 #ifndef RELIEF_TEXTURE_H
 #define RELIEF_TEXTURE_H
-#include "formulas/texel.h"
+#include "formulas/texture_uv.h"
 
 #include "formulas/begin.h"
 
-/// uv in texels from the centre of texel (0, 0), row 0 at v = 1; the integer part goes first for precision.
-FN Vec2 locate_texture_uv(const Vec2 uv, const Vec2 size) {
-    Vec2 result = {(uv.x - floor_texel(uv.x)) * size.x - 0.5f,
-                   (1.0f - (uv.y - floor_texel(uv.y))) * size.y - 0.5f};
-    return result;
-}
-
-/// The same without repeating: places far outside stay there. For all modes but kWrapRepeat.
+/// As locate_texture_uv without repeating: places far outside stay there. For all modes but kWrapRepeat.
 FN Vec2 locate_wrapped_uv(const Vec2 uv, const Vec2 size) {
     float far = 4194304.0f; // texels: the place between two of them is still known
     Vec2 result = {clamp(uv.x * size.x - 0.5f, -far, far), clamp((1.0f - uv.y) * size.y - 0.5f, -far, far)};

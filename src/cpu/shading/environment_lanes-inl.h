@@ -4,10 +4,8 @@
 #include <cstring>
 
 #include "cpu/shading/environment_light.h"
-#include "cpu/traversal/lane_arrays-inl.h"
+#include "cpu/shading/texture_lanes-inl.h"
 #include "formulas/environment_data.h"
-#include "formulas/wide-inl.h"
-#include "surface/map/texel_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -55,70 +53,17 @@ RELIEF_INLINE Float find_cell_density(const cpu::EnvironmentTables& tables, cons
         tables.data, find_share(tables.columns, cell) * find_share(tables.rows, row), direction);
 }
 
-/// The texels about sixteen places of an image.
-struct ImagePlaces {
-    alignas(64) uint32_t left[16], right[16], top[16], bottom[16]; ///< columns; rows times the width
-    alignas(64) float fx[16], fy[16];
+/// A place in the environment's image in texels from the centre of texel (0, 0).
+RELIEF_INLINE Vec2 locate_on_image(const Texture& texture, const Vec2& position) {
+    return locate_latlong(position, {Float(float(texture.width)), Float(float(texture.height))});
+}
 
-    RELIEF_INLINE void locate(const Texture& texture, const Vec2& position) {
-        const Float zero(0.0f), one(1.0f);
-        const Float width(float(texture.width)), height(float(texture.height));
-        const Vec2 at = locate_latlong(position, {width, height});
-        const Float x = floor(at.x), y = floor(at.y);
-        (at.x - x).store(fx), (at.y - y).store(fy);
-        const auto store = [](const Float& value, uint32_t count, uint32_t factor, uint32_t* target)
-                               HWY_ATTR {
-                                   // NaN lies nowhere: any texel.
-                                   (min(Uint(value), Uint(count - 1)) * Uint(factor)).store(target);
-                               };
-        store(select(x < zero, x + width, x), texture.width, 1, left);
-        store(select(x + one < width, x + one, zero), texture.width, 1, right);
-        store(max(y, zero), texture.height, texture.width, top);
-        store(min(y + one, height - one), texture.height, texture.width, bottom);
-    }
-
-    RELIEF_INLINE void prefetch(const Texture& texture, LaneMask which) const {
-        for (; which != 0; which &= which - 1) {
-            const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(which);
-            // Both texels of a row mostly share a line of the cache.
-            prefetch_texel(texture, size_t(top[lane]) + right[lane]);
-            prefetch_texel(texture, size_t(bottom[lane]) + right[lane]);
-        }
-    }
-
-    /// Radiance, bilinear; of the other lanes 0.
-    RELIEF_INLINE Vec3 fetch(const cpu::EnvironmentTables& tables, LaneMask which) const {
-        const Texture& texture = *tables.texture;
-        LaneQuads colors;
-        if (which != 0xffffu) std::memset(&colors, 0, sizeof colors);
-        for (; which != 0; which &= which - 1) {
-            const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(which);
-            const auto load = [&](uint32_t row, uint32_t column)
-                                  HWY_ATTR { return load_texel(texture, size_t(row) + column); };
-            texel::filter_texels(load(top[lane], left[lane]), load(top[lane], right[lane]),
-                                 load(bottom[lane], left[lane]), load(bottom[lane], right[lane]),
-                                 Lanes4(fx[lane]), Lanes4(fy[lane]))
-                .store_unaligned(colors.lane[lane]);
-        }
-        Float r, g, b, alpha;
-        colors.transpose(r, g, b, alpha);
-        const bool is_grey = texture.channel_count < 3;
-        const Vec3f& scale = tables.data.scale;
-        return {r * Float(scale.x), (is_grey ? r : g) * Float(scale.y), (is_grey ? r : b) * Float(scale.z)};
-    }
-};
-
-/// Calls step(round, first, count - first) per sixteen, in rounds: each step prefetches for the next.
-template <class Round, class... Steps> RELIEF_INLINE void run_rounds(size_t count, Steps... steps) {
-    constexpr size_t kRounds = 4;
-    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
-        Round rounds[kRounds];
-        const auto run = [&](auto step) HWY_ATTR {
-            for (size_t k = 0, first = begin; k < kRounds && first < count; ++k, first += 16)
-                step(rounds[k], first, count - first);
-        };
-        (run(steps), ...);
-    }
+/// Radiance at sixteen places; of lanes that `which` lacks anything.
+RELIEF_INLINE Vec3 fetch_radiance(const cpu::EnvironmentTables& tables, const FourTexelLanes& places,
+                                  LaneMask which) {
+    const Vec3 color = places.fetch(*tables.texture, which);
+    const Vec3f& scale = tables.data.scale;
+    return {color.x * Float(scale.x), color.y * Float(scale.y), color.z * Float(scale.z)};
 }
 
 /// EnvironmentLight::look_up of each direction.
@@ -128,7 +73,7 @@ inline void look_up_environment(const cpu::EnvironmentTables& tables, const Vec3
     const scalar::EnvironmentData& data = tables.data;
     const Float cells_x(float(data.cells_x)), cells_y(float(data.cells_y));
     struct Round {
-        ImagePlaces places;
+        FourTexelLanes places;
         alignas(64) float densities[16];
     };
     const auto find_cell = [](const Float& at, const Float& cells, uint32_t cell_count) HWY_ATTR {
@@ -137,14 +82,14 @@ inline void look_up_environment(const cpu::EnvironmentTables& tables, const Vec3
     const auto locate = [&](Round& round, size_t first, size_t left) HWY_ATTR {
         const Vec3 direction = load_vectors(directions + first, left);
         const Vec2 position = locate_in_environment(data, direction);
-        round.places.locate(*tables.texture, position);
+        round.places.place(*tables.texture, locate_on_image(*tables.texture, position), TexelRows::clamped);
         round.places.prefetch(*tables.texture, first_lanes(left));
         find_cell_density(tables, find_cell(position.x, cells_x, data.cells_x),
                           find_cell(position.y, cells_y, data.cells_y), direction)
             .store(round.densities);
     };
     const auto fetch = [&](const Round& round, size_t first, size_t left) HWY_ATTR {
-        const Vec3 radiance = round.places.fetch(tables, first_lanes(left));
+        const Vec3 radiance = fetch_radiance(tables, round.places, first_lanes(left));
         LaneQuads quads;
         quads.set(radiance.x, radiance.y, radiance.z, Float::load(round.densities));
         std::memcpy(found + first, quads.lane, 16 * HWY_MIN(size_t(16), left));
@@ -155,14 +100,15 @@ inline void look_up_environment(const cpu::EnvironmentTables& tables, const Vec3
 /// EnvironmentLight::radiance of each place.
 inline void fetch_environment(const cpu::EnvironmentTables& tables, const Vec2f* positions, size_t count,
                               Vec3f* radiances) {
-    const auto locate = [&](ImagePlaces& places, size_t first, size_t left) HWY_ATTR {
-        places.locate(*tables.texture, load_pairs(positions + first, left));
+    const auto locate = [&](FourTexelLanes& places, size_t first, size_t left) HWY_ATTR {
+        places.place(*tables.texture, locate_on_image(*tables.texture, load_pairs(positions + first, left)),
+                     TexelRows::clamped);
         places.prefetch(*tables.texture, first_lanes(left));
     };
-    const auto fetch = [&](const ImagePlaces& places, size_t first, size_t left) HWY_ATTR {
-        store_vectors(places.fetch(tables, first_lanes(left)), left, radiances + first);
+    const auto fetch = [&](const FourTexelLanes& places, size_t first, size_t left) HWY_ATTR {
+        store_vectors(fetch_radiance(tables, places, first_lanes(left)), left, radiances + first);
     };
-    run_rounds<ImagePlaces>(count, locate, fetch);
+    run_rounds<FourTexelLanes>(count, locate, fetch);
 }
 
 template <class T> RELIEF_INLINE void prefetch(const T* base, const Uint& index) {

@@ -76,13 +76,24 @@ void LightSet::draw(std::span<const Receiver> at, std::span<const RandomNumbers>
     }
 }
 
+/// Points of a block whose directions are drawn for many at once.
+struct LightSet::SharedDraws {
+    struct List {
+        std::array<uint32_t, kBlock> points;
+        std::array<LightChoice::Pick, kBlock> picks;
+        std::array<Vec2f, kBlock> u;
+        size_t count = 0;
+
+        void add(size_t point, const LightChoice::Pick& pick, const Vec2f& numbers) {
+            points[count] = uint32_t(point), picks[count] = pick, u[count++] = numbers;
+        }
+    };
+    List environment, suns;
+};
+
 void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
                           std::span<LightSample> drawn) const {
-    std::array<uint32_t, kBlock> receivers; // of light from the environment
-    std::array<float, kBlock> probabilities;
-    std::array<Vec2f, kBlock> u;
-    std::array<DirectionSample, kBlock> directions;
-    size_t count = 0;
+    SharedDraws shared;
     for (size_t k = 0; k < at.size(); ++k) {
         const LightChoice::Pick pick = choice_.pick({at[k].position, at[k].normal, at[k].instance},
                                                     random[k].u_light, random[k].u_emitter);
@@ -92,19 +103,49 @@ void LightSet::draw_block(std::span<const Receiver> at, std::span<const RandomNu
         if (!pick.source && pick.emitter == kNoIndex)
             drawn[k].pdf = 0, drawn[k].direction = {};
         else if (pick.source && pick.source->kind == scalar::kSourceEnvironment)
-            receivers[count] = uint32_t(k), probabilities[count] = pick.probability, u[count++] = random[k].u;
+            shared.environment.add(k, pick, random[k].u);
+        else if (pick.source && pick.source->kind == scalar::kSourceSun && pick.source->cone > 0)
+            shared.suns.add(k, pick, random[k].u);
         else
             draw_from(pick, at[k], random[k], drawn[k]);
     }
-    if (count == 0) return;
-    environment_->draw_directions(tracer_.shading_kernels(), {u.data(), count}, directions);
-    for (size_t n = 0; n < count; ++n) {
+    draw_from_environment(shared, drawn);
+    draw_from_suns(shared, drawn);
+}
+
+void LightSet::draw_from_environment(const SharedDraws& shared, std::span<LightSample> drawn) const {
+    const SharedDraws::List& list = shared.environment;
+    if (list.count == 0) return;
+    std::array<DirectionSample, kBlock> directions;
+    environment_->draw_directions(tracer_.shading_kernels(), {list.u.data(), list.count}, directions);
+    for (size_t n = 0; n < list.count; ++n) {
         const DirectionSample& found = directions[n];
-        const float density = found.pdf * probabilities[n], weight = density > 0 ? 1 / density : 0.0f;
-        LightSample& sample = drawn[receivers[n]];
+        const float density = found.pdf * list.picks[n].probability;
+        const float weight = density > 0 ? 1 / density : 0.0f;
+        LightSample& sample = drawn[list.points[n]];
         sample.direction = found.direction, sample.distance = scalar::make_infinity();
         sample.weight = {weight, weight, weight}, sample.pdf = density;
         sample.place = found.position, sample.lacks_radiance = true;
+    }
+}
+
+/// Directions aside, what is drawn from a sun is the same for all points.
+void LightSet::draw_from_suns(const SharedDraws& shared, std::span<LightSample> drawn) const {
+    const SharedDraws::List& list = shared.suns;
+    std::array<Vec3f, kBlock> directions;
+    for (size_t first = 0, end; first < list.count; first = end) {
+        const scalar::LightSourceData& sun = *list.picks[first].source;
+        for (end = first; end < list.count && list.picks[end].source == &sun;) ++end;
+        tracer_.shading_kernels().draw_cone(sun.basis, sun.cone, &list.u[first], end - first,
+                                            directions.data());
+        const scalar::LightDraw common = scalar::draw_sun(sun, {});
+        for (size_t n = first; n < end; ++n) {
+            LightSample& sample = drawn[list.points[n]];
+            static_cast<scalar::LightDraw&>(sample) = common;
+            sample.direction = directions[n - first];
+            sample.pdf *= list.picks[n].probability;
+            sample.weight *= 1 / list.picks[n].probability;
+        }
     }
 }
 

@@ -115,6 +115,9 @@ class LightSet {
                    LightSample& drawn) const;
     void draw_block(std::span<const Receiver> at, std::span<const RandomNumbers> random,
                     std::span<LightSample> drawn) const;
+    struct SharedDraws;
+    void draw_from_environment(const SharedDraws& shared, std::span<LightSample> drawn) const;
+    void draw_from_suns(const SharedDraws& shared, std::span<LightSample> drawn) const;
     uint32_t find_emitter(float u_emitter) const;
     void draw_emitter(const Receiver& at, uint32_t emitter, const Vec2f& u, LightSample& drawn) const;
     float emitter_density(uint32_t emitter, const Vec3f& origin, const SurfacePoint& point) const;

@@ -1,14 +1,18 @@
 #include "cpu/shading/point_material.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "cpu/shading/textures.h"
 #include "formulas/path.h"
 
 namespace relief::cpu {
 
-PointMaterial make_point_material(const PreparedScene& scene, uint32_t instance, const Vec2f& uv) {
-    const uint32_t index = scene.instances[instance].material;
+namespace {
+
+/// With textures of single numbers, and with base_color as its factor.
+PointMaterial make_numbers(const PreparedScene& scene, uint32_t index, const Vec2f& uv) {
     const Material& material = scene.materials[index];
     PointMaterial m{material.base_color,
                     material.emission,
@@ -19,14 +23,77 @@ PointMaterial make_point_material(const PreparedScene& scene, uint32_t instance,
                     scene.glass.empty() ? kNoIndex : scene.glass.record_of_material[index],
                     kNoIndex};
     m.glass_numbers = m.glass;
-    if (material.base_color_texture)
-        m.base_color =
-            m.base_color * fetch_texture(*material.base_color_texture, material.base_color_filter, uv);
     if (material.roughness_texture)
         m.roughness *= fetch_texture(*material.roughness_texture, material.roughness_filter, uv).x;
-    m.base_color = scalar::limit_color(m.base_color);
     m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
     return m;
+}
+
+/// Looks up textures of colours for the points that wait, those of one texture together.
+class ColorLookUps {
+  public:
+    static constexpr size_t kMost = 64; ///< points that may wait
+
+    void add(size_t point, const Texture& texture, const Vec2f& uv) {
+        textures_[count_] = &texture, uvs_[count_] = uv, points_[count_++] = uint32_t(point);
+    }
+
+    template <class Use> void finish(const ShadingKernels& kernels, const Use& use) {
+        while (count_ > 0) {
+            const Texture* texture = textures_[0];
+            std::array<Vec2f, kMost> uvs;
+            std::array<uint32_t, kMost> points;
+            std::array<Vec3f, kMost> colors;
+            size_t size = 0, left = 0;
+            for (size_t n = 0; n < count_; ++n)
+                if (textures_[n] == texture)
+                    uvs[size] = uvs_[n], points[size++] = points_[n];
+                else
+                    textures_[left] = textures_[n], uvs_[left] = uvs_[n], points_[left++] = points_[n];
+            kernels.fetch_texture(*texture, uvs.data(), size, colors.data());
+            for (size_t n = 0; n < size; ++n) use(points[n], colors[n]);
+            count_ = left;
+        }
+    }
+
+  private:
+    std::array<const Texture*, kMost> textures_;
+    std::array<Vec2f, kMost> uvs_;
+    std::array<uint32_t, kMost> points_;
+    size_t count_ = 0;
+};
+
+void make_block(const PreparedScene& scene, const ShadingKernels& kernels, std::span<const TraceHit> hits,
+                std::span<const SurfacePoint> points, std::span<PointMaterial> materials) {
+    ColorLookUps colors;
+    for (size_t k = 0; k < hits.size(); ++k) {
+        const uint32_t index = scene.instances[hits[k].instance].material;
+        const Material& material = scene.materials[index];
+        const Vec2f& uv = points[k].uv;
+        materials[k] = make_numbers(scene, index, uv);
+        if (!material.base_color_texture) continue;
+        if (is_smooth(material.base_color_filter) || !std::isfinite(uv.x) || !std::isfinite(uv.y))
+            materials[k].base_color = materials[k].base_color * fetch_texture(*material.base_color_texture,
+                                                                              material.base_color_filter, uv);
+        else
+            colors.add(k, *material.base_color_texture, uv);
+    }
+    colors.finish(kernels, [&](size_t k, const Vec3f& color) {
+        materials[k].base_color = materials[k].base_color * color;
+    });
+    for (PointMaterial& m : materials) m.base_color = scalar::limit_color(m.base_color);
+}
+
+} // namespace
+
+void make_point_materials(const PreparedScene& scene, const ShadingKernels& kernels,
+                          std::span<const TraceHit> hits, std::span<const SurfacePoint> points,
+                          std::span<PointMaterial> materials) {
+    for (size_t first = 0; first < hits.size(); first += ColorLookUps::kMost) {
+        const size_t count = std::min(ColorLookUps::kMost, hits.size() - first);
+        make_block(scene, kernels, hits.subspan(first, count), points.subspan(first, count),
+                   materials.subspan(first, count));
+    }
 }
 
 float find_opacity(const Material& material, const Vec2f& uv) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "cpu/shading/shading_kernels.h"
 #include "math/vec.h"
 #include "prepare/prepared_scene.h"
 
@@ -17,8 +19,10 @@ struct PointMaterial {
     uint32_t glass_numbers; ///< its place where vertices have numbers of their own (VertexInputs::glass)
 };
 
-/// Of the material of an instance; without Material::textures.
-PointMaterial make_point_material(const PreparedScene& scene, uint32_t instance, const Vec2f& uv);
+/// Of the materials at many hits, whose points have the uvs; without Material::textures.
+void make_point_materials(const PreparedScene& scene, const ShadingKernels& kernels,
+                          std::span<const TraceHit> hits, std::span<const SurfacePoint> points,
+                          std::span<PointMaterial> materials);
 
 /// In [0, 1], with its texture, unless that is one of Material::textures.
 float find_opacity(const Material& material, const Vec2f& uv);

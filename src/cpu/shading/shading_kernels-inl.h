@@ -11,11 +11,13 @@
 
 #include <cstring>
 
+#include "cpu/shading/cone_lanes-inl.h"
 #include "cpu/shading/environment_lanes-inl.h"
 #include "cpu/shading/polygon_points-inl.h"
 #include "cpu/shading/reflection-inl.h"
 #include "cpu/shading/shading_kernels.h"
 #include "cpu/shading/surface_points-inl.h"
+#include "cpu/shading/texture_lanes-inl.h"
 #include "cpu/traversal/camera_rays-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -39,10 +41,17 @@ void sample_2d(const cpu::SampleList& list, uint32_t pair, Vec2f* drawn) {
 } // namespace
 
 const cpu::ShadingKernels& shading_kernels(const char* name) {
-    static const cpu::ShadingKernels kKernels{
-        name,          make_batch<make_points>,   make_batch<make_polygon_points>, sample_2d,
-        wide::reflect, wide::look_up_environment, wide::fetch_environment,         wide::draw_directions,
-        aim_rays};
+    static const cpu::ShadingKernels kKernels{name,
+                                              make_batch<make_points>,
+                                              make_batch<make_polygon_points>,
+                                              sample_2d,
+                                              wide::reflect,
+                                              wide::look_up_environment,
+                                              wide::fetch_environment,
+                                              wide::draw_directions,
+                                              wide::draw_cone,
+                                              wide::fetch_texture,
+                                              aim_rays};
     return kKernels;
 }
 
