@@ -48,29 +48,34 @@ void TileTracer::trace_samples(SampleRange samples) {
         shade_paths();
         trace_shadow_rays();
     }
+    finish_paths();
+}
+
+void TileTracer::finish_paths() {
     const Timer timer;
-    for (const Path& path : paths_) film_.add_sample(path.x, path.y, path.result);
-    if (path_lights_.is_on())
-        for (uint32_t i = 0; i < paths_.size(); ++i)
-            film_.add_lights(paths_[i].x, paths_[i].y, path_lights_.at(i));
+    for (uint32_t i = 0; i < paths_.size(); ++i) {
+        const Pixel& pixel = pixel_of(i);
+        FilmSample& sample = first_hits_[i];
+        sample.radiance = paths_[i].radiance, sample.cost = paths_[i].cost;
+        film_.add_sample(pixel.x, pixel.y, sample);
+        if (path_lights_.is_on()) film_.add_lights(pixel.x, pixel.y, path_lights_.at(i));
+    }
     counters_.film_s += timer.seconds();
 }
 
 void TileTracer::start_paths(SampleRange samples) {
-    const size_t count = pixels_.size() * size_t(samples.count);
-    paths_.resize(count), seeds_.resize(count), samples_.resize(count), active_.resize(count);
+    sample_count_ = uint32_t(samples.count);
+    const size_t count = pixels_.size() * sample_count_;
+    paths_.assign(count, {}), first_hits_.assign(count, {});
+    seeds_.resize(count), samples_.resize(count), active_.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
-        const Pixel& pixel = pixels_[i / uint32_t(samples.count)];
-        paths_[i] = {};
-        paths_[i].x = pixel.x, paths_[i].y = pixel.y;
-        paths_[i].result.cost = 1;
-        seeds_[i] = pixel.seed, samples_[i] = uint32_t(samples.first) + i % uint32_t(samples.count);
+        seeds_[i] = pixel_of(i).seed, samples_[i] = uint32_t(samples.first) + i % sample_count_;
         active_[i] = i;
     }
     list_wave_samples();
     sample_2d(scalar::kPixelPair, places_);
     for (size_t i = 0; i < count; ++i)
-        places_[i] = Vec2f{float(paths_[i].x), float(paths_[i].y)} + places_[i];
+        places_[i] = Vec2f{float(pixel_of(i).x), float(pixel_of(i).y)} + places_[i];
     if (path_lights_.is_on()) path_lights_.start(paths_.size());
     rays_.resize(paths_.size());
     if (!is_pinhole())
@@ -97,11 +102,11 @@ void TileTracer::trace_paths() {
                        [&](uint32_t k, const Vec3f& left) { pass_wall(k, left); }, WallRule::by_chance},
                       cut_out_scratch_);
     if (!footprints_) return;
-    for (size_t k = 0; k < rays_.size(); ++k) note_ray(paths_[active_[k]], rays_[k], hits_[k].t);
+    for (size_t k = 0; k < rays_.size(); ++k) note_ray(active_[k], rays_[k], hits_[k].t);
 }
 
-void TileTracer::note_ray(const Path& path, const TraceRay& ray, float t_end) {
-    footprints_->at(path.x, path.y).add_ray(ray.origin, ray.direction, t_end);
+void TileTracer::note_ray(uint32_t path, const TraceRay& ray, float t_end) {
+    footprints_->at(pixel_of(path).x, pixel_of(path).y).add_ray(ray.origin, ray.direction, t_end);
 }
 
 void TileTracer::sample_2d(uint32_t pair, std::vector<Vec2f>& drawn) const {
@@ -150,12 +155,11 @@ void TileTracer::pass_shadow_rays() {
 /// What shadow ray `k` brings, which nothing is in the way of.
 void TileTracer::add_shadow_light(size_t k) {
     const auto& [path, light] = shadows_[k];
-    FilmSample& result = paths_[path].result;
-    if (result.shadow.x > 0) { // of a shadow catcher
-        result.shadow.y += scalar::luminance(light);
+    if (has_catchers_ && first_hits_[path].shadow.x > 0) {
+        first_hits_[path].shadow.y += scalar::luminance(light);
         return;
     }
-    result.radiance += light;
+    paths_[path].radiance += light;
     if (path_lights_.is_on()) path_lights_.add_shadow_light(k, path, light, uint32_t(depth_));
 }
 
@@ -165,7 +169,7 @@ void TileTracer::trace_shadow_rays() {
     if (tracer_.scene().has_cut_outs) pass_shadow_rays();
     if (footprints_)
         for (size_t k = 0; k < shadows_.size(); ++k)
-            note_ray(paths_[shadows_[k].path], shadow_rays_[k], shadow_rays_[k].t_max);
+            note_ray(shadows_[k].path, shadow_rays_[k], shadow_rays_[k].t_max);
     for (size_t k = 0; k < shadows_.size(); ++k)
         if (!occluded_[k]) add_shadow_light(k);
     counters_.shadow_rays += shadow_rays_.size();

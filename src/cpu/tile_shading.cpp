@@ -95,7 +95,7 @@ void TileTracer::add_backgrounds() {
     if (depth_ == 0 && settings_.image.background) {
         // Lights cover the background of the picture, which is none of the scene.
         for (size_t n = 0; n < count; ++n)
-            if (paths_[active_[missed_[n]]].result.alpha == 0) add(n, *settings_.image.background);
+            if (first_hits_[active_[missed_[n]]].alpha == 0) add(n, *settings_.image.background);
         return;
     }
     lights_.look_up_environment(directions_, backgrounds_);
@@ -106,7 +106,7 @@ void TileTracer::add_backgrounds() {
 /// What the camera sees behind all surfaces; less of it than there is through clear walls.
 void TileTracer::add_background(uint32_t path, const Vec3f& light) {
     const Vec3f seen = paths_[path].throughput * light;
-    paths_[path].result.radiance += seen;
+    paths_[path].radiance += seen;
     if (path_lights_.is_on()) path_lights_.add_background(path, settings_.image.background.has_value(), seen);
 }
 
@@ -127,8 +127,8 @@ void TileTracer::add_lights_before(size_t k, const Vec3f& share, const Environme
     Path& path = paths_[index];
     if (depth_ == 0) {
         const LightSet::Sight seen = lights_.see(rays_[k].origin, rays_[k].direction, hits_[k].t);
-        path.result.radiance += share * seen.radiance;
-        if (seen.is_met) path.result.alpha = 1;
+        path.radiance += share * seen.radiance;
+        if (seen.is_met) first_hits_[index].alpha = 1;
         if (path_lights_.is_on()) path_lights_.add_seen_lights(index, lights_, rays_[k], hits_[k].t, share);
         return;
     }
@@ -157,7 +157,7 @@ bool TileTracer::is_catcher(size_t k) const {
 /// A light that the camera sees hides the shadows behind it, as it hides the background.
 void TileTracer::cover_catchers() {
     for (size_t k = 0; k < active_.size(); ++k)
-        if (hits_[k].is_hit() && is_catcher(k) && paths_[active_[k]].result.alpha > 0) hits_[k] = {};
+        if (hits_[k].is_hit() && is_catcher(k) && first_hits_[active_[k]].alpha > 0) hits_[k] = {};
 }
 
 void TileTracer::drop_misses() {
@@ -283,7 +283,7 @@ void TileTracer::reflect(size_t first, size_t count) {
 }
 
 void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lane) {
-    FilmSample& result = paths_[active_[k]].result;
+    FilmSample& result = first_hits_[active_[k]];
     if (is_catcher(k)) {
         result.shadow.x = 1;
         return;
@@ -302,7 +302,7 @@ void TileTracer::record_first_hit(size_t k, const VertexLanes& lanes, size_t lan
 Vec3f TileTracer::add_found_light(uint32_t path, const Vec3f& light) {
     const uint32_t bounces = uint32_t(std::max(depth_ - 1, 0));
     const Vec3f found = scalar::clamp_indirect(light, settings_.image.clamp_indirect, bounces);
-    paths_[path].result.radiance += found;
+    paths_[path].radiance += found;
     if (depth_ > 0) path_lights_.add_scattered(path, found, bounces);
     return found;
 }
@@ -325,7 +325,7 @@ bool TileTracer::is_covered(size_t k, float lift) {
     const TraceRay ray{tracer_.offset_origin(point, up), 0, up, lift, hits_[k].lod_bias};
     TraceHit hit;
     tracer_.continued_hits({&ray, 1}, {&hit, 1}, depth_);
-    if (footprints_) note_ray(paths_[active_[k]], ray, ray.t_max);
+    if (footprints_) note_ray(active_[k], ray, ray.t_max);
     return hit.is_hit();
 }
 
@@ -346,8 +346,8 @@ void TileTracer::add_shadow_ray(size_t k, const VertexLanes& lanes, size_t lane,
     if (has_glass_)
         if (const auto* body = find_body(choose_body(k, lanes, lane, ray.direction)))
             contribution = contribution * scalar::absorb_along(body->depth, ray.t_max);
-    if (is_catcher(k)) path.result.shadow.z += scalar::luminance(contribution);
-    path.result.cost += 1;
+    if (is_catcher(k)) first_hits_[active_[k]].shadow.z += scalar::luminance(contribution);
+    path.cost += 1;
     if (lanes.light_lift[lane] > 0 && is_covered(k, lanes.light_lift[lane])) return;
     shadow_rays_.push_back(ray);
     shadows_.push_back(
@@ -371,7 +371,7 @@ bool TileTracer::continue_path(size_t k, const VertexLanes& lanes, size_t lane, 
     path.throughput *= 1 / probability;
     path.previous = {points_[k].position, get_lane(lanes.geometric_normal, lane), points_[k].instance};
     path.bsdf_pdf = lanes.bounce_pdf[lane];
-    path.result.cost += 1;
+    path.cost += 1;
     if (depth_ == 0)
         path_lights_.set_shares(active_[k], make_shares(get_lane(lanes.bounce_diffuse, lane),
                                                         is_from_behind(lanes, lane, direction)));

@@ -21,15 +21,16 @@
 
 namespace relief::cpu {
 
-/// What a path brings from vertex to vertex; its ray and hit are in the wave.
-struct Path {
+/// What a path brings from vertex to vertex, a line of the cache; its ray and hit are in the wave.
+struct alignas(64) Path {
     Vec3f throughput{1, 1, 1};
     scalar::LitPoint previous{}; ///< the vertex that the ray left
     float bsdf_pdf = 0;          ///< with which the ray was drawn there
     uint32_t body = kNoIndex;    ///< of solid glass that the ray is in: record of PreparedScene::glass
-    int x = 0, y = 0;
-    FilmSample result;
+    Vec3f radiance{};            ///< as that of FilmSample, and cost
+    float cost = 1;
 };
+static_assert(sizeof(Path) == 64);
 
 struct ShadowRay {
     uint32_t path;
@@ -55,7 +56,7 @@ class TileTracer {
         return scalar::draw_cut_out(seeds_[path], samples_[path], uint32_t(depth_), is_shadow ? 1 : 0, round);
     }
     void pass_shadow_rays();
-    void note_ray(const Path& path, const TraceRay& ray, float t_end);
+    void note_ray(uint32_t path, const TraceRay& ray, float t_end);
     void shade_paths();
     void shade_vertices();
     void add_last_emission();
@@ -106,9 +107,13 @@ class TileTracer {
         int x, y;
         uint32_t seed;
     };
+    const Pixel& pixel_of(size_t path) const { return pixels_[path / sample_count_]; }
+    void finish_paths();
     std::vector<Pixel> pixels_;             ///< in packets of kPacketEdge squared
+    uint32_t sample_count_ = 0;             ///< of each
     int depth_ = 0;                         ///< vertices behind the wave: 0 for camera rays
     std::vector<Path> paths_;               ///< all samples of a pixel after those of the one before
+    std::vector<FilmSample> first_hits_;    ///< of paths_: what does not change behind the first vertex
     std::vector<uint32_t> seeds_, samples_; ///< of paths_: of the pixel, and the number of the sample
 
     std::vector<uint32_t> active_; ///< paths still on their way, in order
