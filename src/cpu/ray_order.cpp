@@ -13,19 +13,26 @@ namespace {
 constexpr int kCellsASide = 16;
 constexpr size_t kLeastRays = 256; ///< of fewer rays few go the same way
 
-int find_column(float coordinate) {
-    return std::clamp(int((coordinate + 1) * (0.5f * kCellsASide)), 0, kCellsASide - 1);
+/// NaN is in the last one.
+uint32_t find_column(float coordinate) {
+    constexpr float kLast = float(kCellsASide) - 0.5f;
+    const float place = (coordinate + 1) * (0.5f * kCellsASide);
+    return uint32_t(place < kLast ? std::max(place, 0.0f) : kLast);
 }
 
 /// Of a finite direction; any cell for others.
-uint8_t find_cell(const Vec3f& d) {
-    const float sum = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
-    const float x = d.x / sum, y = d.y / sum;
-    if (!(sum > 0) || !(std::fabs(x) <= 1 && std::fabs(y) <= 1)) return 0;
+uint32_t find_cell(const Vec3f& d) {
+    const float scale = 1 / (std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z));
+    const float x = d.x * scale, y = d.y * scale;
     // The lower half is folded out over the corners.
     const float u = d.z < 0 ? std::copysign(1 - std::fabs(y), x) : x;
     const float v = d.z < 0 ? std::copysign(1 - std::fabs(x), y) : y;
-    return uint8_t(find_column(v) * kCellsASide + find_column(u));
+    return find_column(v) * kCellsASide + find_column(u);
+}
+
+/// For at least so many members, which keep what they were.
+template <class T> void reserve_members(std::vector<T>& members, size_t count) {
+    if (members.size() < count) members.resize(count);
 }
 
 /// Fills order.places and order.rays: rays of one cell of directions after those of another. Stable. False,
@@ -40,14 +47,14 @@ bool order_by_direction(std::span<const TraceRay> rays, RayOrder& order) {
         return false;
     }
     std::array<uint32_t, kKeyCount + 1> begin{};
-    order.cells.resize(rays.size());
+    reserve_members(order.cells, rays.size());
     for (size_t k = 0; k < rays.size(); ++k) {
         order.cells[k] = uint16_t(find_cell(rays[k].direction) + (rays[k].lod_bias > 0 ? kCellCount : 0));
         ++begin[order.cells[k] + 1];
     }
     for (size_t cell = 0; cell < kKeyCount; ++cell) begin[cell + 1] += begin[cell];
     for (uint32_t k = 0; k < rays.size(); ++k) order.places[begin[order.cells[k]]++] = k;
-    order.rays.resize(rays.size());
+    reserve_members(order.rays, rays.size());
     for (size_t k = 0; k < rays.size(); ++k) order.rays[k] = rays[order.places[k]];
     return true;
 }
@@ -57,8 +64,8 @@ template <class Found, class Trace>
 void trace_in_order(std::span<const TraceRay> rays, std::span<Found> found, RayOrder& order,
                     std::vector<Found>& in_order, const Trace& trace) {
     if (!order_by_direction(rays, order)) return trace(rays, found);
-    in_order.resize(rays.size());
-    trace(std::span<const TraceRay>(order.rays), std::span(in_order));
+    reserve_members(in_order, rays.size());
+    trace(std::span<const TraceRay>(order.rays).first(rays.size()), std::span(in_order).first(rays.size()));
     for (size_t k = 0; k < rays.size(); ++k) found[order.places[k]] = in_order[k];
 }
 

@@ -61,7 +61,8 @@ enum class OrderedQuery;
 /// What one thread needs for many points at once.
 struct PointScratch {
     PatchSamplesCache patches;
-    std::vector<uint64_t> keys;
+    std::vector<uint64_t> keys, sorted;
+    std::vector<uint8_t> kinds;
     std::vector<uint32_t> order;
 };
 

@@ -8,13 +8,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE::wide {
 
-RELIEF_INLINE Vec3 broadcast(const Vec3f& v) { return {Float(v.x), Float(v.y), Float(v.z)}; }
-
 /// A unit vector for each pair of random numbers, uniformly from the cone about axes.n; `height` as that of
 /// square_to_cone().
 inline void draw_cone(const scalar::Basis& axes, float height, const Vec2f* u, size_t count,
                       Vec3f* directions) {
-    const Basis basis{broadcast(axes.t), broadcast(axes.b), broadcast(axes.n)};
+    const Basis basis{spread(axes.t), spread(axes.b), spread(axes.n)};
     for (size_t first = 0; first < count; first += 16) {
         const Vec3 local = square_to_cone(load_pairs(u + first, count - first), Float(height));
         store_vectors(normalize(from_local(basis, local)), count - first, directions + first);

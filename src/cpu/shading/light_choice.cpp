@@ -12,7 +12,9 @@ Vec3f LightChoice::fetch_color(const scalar::LightSourceData& source, const Vec3
 }
 
 float LightChoice::estimate(const scalar::LightSourceData& source, const scalar::LitPoint& at) const {
-    return is_lit(source, at) ? scalar::estimate_irradiance(source, at.position) : 0.0f;
+    if (!is_lit(source, at)) return 0;
+    const bool is_far = source.kind == scalar::kSourceEnvironment || source.kind == scalar::kSourceSun;
+    return is_far ? source.power : scalar::estimate_irradiance(source, at.position); // the same, at once
 }
 
 float LightChoice::total_estimate(const scalar::LitPoint& at) const {

@@ -61,6 +61,34 @@ uint32_t make_key(const PreparedScene& scene, const TraceHit& hit) {
     return index << 11 | mip << 8 | surface.tile(surface.quads[hit.patch].vertex[0]);
 }
 
+/// As std::sort of numbers whose lower halves rise; in one pass where their upper halves are of few kinds.
+void sort_kinds(std::vector<uint64_t>& keys, std::vector<uint64_t>& sorted, std::vector<uint8_t>& kinds) {
+    constexpr size_t kMostKinds = 16;
+    struct Kind {
+        uint64_t value;
+        uint32_t count, next;
+    };
+    std::array<Kind, kMostKinds> found;
+    size_t kind_count = 0, last = 0;
+    kinds.resize(keys.size());
+    for (size_t k = 0; k < keys.size(); ++k) {
+        const uint64_t value = keys[k] >> 32;
+        if (kind_count == 0 || found[last].value != value) {
+            for (last = 0; last < kind_count && found[last].value != value;) ++last;
+            if (last == kMostKinds) return std::sort(keys.begin(), keys.end());
+            if (last == kind_count) found[kind_count++] = {value, 0, 0};
+        }
+        ++found[last].count;
+        kinds[k] = uint8_t(last);
+    }
+    for (size_t a = 0; a < kind_count; ++a)
+        for (size_t b = 0; b < kind_count; ++b)
+            found[a].next += found[b].value < found[a].value ? found[b].count : 0;
+    sorted.resize(keys.size());
+    for (size_t k = 0; k < keys.size(); ++k) sorted[found[kinds[k]].next++] = keys[k];
+    keys.swap(sorted);
+}
+
 /// The same through a cache; null on a surface without displacement.
 const PatchSamples* find_samples(const PreparedScene& scene, const TraceHit& hit,
                                  PatchSamplesCache& patches) {
@@ -147,7 +175,7 @@ void make_points(const PreparedScene& scene, const ShadingKernels& kernels, std:
     std::vector<uint64_t>& keys = scratch.keys;
     keys.clear();
     for (size_t k = 0; k < hits.size(); ++k) keys.push_back(uint64_t(make_key(scene, hits[k])) << 32 | k);
-    if (!std::is_sorted(keys.begin(), keys.end())) std::sort(keys.begin(), keys.end());
+    if (!std::is_sorted(keys.begin(), keys.end())) sort_kinds(keys, scratch.sorted, scratch.kinds);
     scratch.order.clear();
     for (const uint64_t key : keys) scratch.order.push_back(uint32_t(key));
     for (size_t first = 0, last; first < keys.size(); first = last) {

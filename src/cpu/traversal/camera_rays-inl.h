@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "cpu/tracer.h"
+#include "cpu/traversal/lane_arrays-inl.h"
 #include "formulas/camera.h"
-#include "formulas/wide-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
@@ -16,7 +16,9 @@ struct WideCamera {
     wide::Vec3 corner, step_x, step_y;
 
     RELIEF_INLINE explicit WideCamera(const scalar::CameraFrame& camera)
-        : corner(spread(camera.corner)), step_x(spread(camera.step_x)), step_y(spread(camera.step_y)) {}
+        : corner(wide::spread(camera.corner)),
+          step_x(wide::spread(camera.step_x)),
+          step_y(wide::spread(camera.step_y)) {}
 
     /// Directions of scalar::make_pinhole_ray for sixteen positions; the last one fills missing lanes.
     RELIEF_INLINE wide::Vec3 aim(const Vec2f* positions, size_t count) const {
@@ -29,11 +31,6 @@ struct WideCamera {
         wide::Vec2 place;
         Lanes16::load_pairs(&positions->x, place.x, place.y);
         return wide::make_unit(wide::find_picture_point(corner, step_x, step_y, place));
-    }
-
-  private:
-    static RELIEF_INLINE wide::Vec3 spread(const Vec3f& v) {
-        return {Lanes16(v.x), Lanes16(v.y), Lanes16(v.z)};
     }
 };
 

@@ -8,6 +8,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE::wide {
 
+RELIEF_INLINE Vec3 spread(const Vec3f& v) { return {Float(v.x), Float(v.y), Float(v.z)}; }
+
 /// The lanes of `count` members, at most sixteen.
 RELIEF_INLINE LaneMask first_lanes(size_t count) { return count >= 16 ? 0xffffu : (1u << count) - 1; }
 
