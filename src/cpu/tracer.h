@@ -60,7 +60,7 @@ enum class OrderedQuery;
 
 /// What one thread needs for many points at once.
 struct PointScratch {
-    PatchSamplesCache patches;
+    PatchSamplesCache patches{128}; ///< rays of sixteen samples meet as many from time to time
     std::vector<uint64_t> keys, sorted;
     std::vector<uint8_t> kinds;
     std::vector<uint32_t> order;

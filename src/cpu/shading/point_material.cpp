@@ -66,11 +66,17 @@ class ColorLookUps {
 void make_block(const PreparedScene& scene, const ShadingKernels& kernels, std::span<const TraceHit> hits,
                 std::span<const SurfacePoint> points, std::span<PointMaterial> materials) {
     ColorLookUps colors;
+    uint32_t last = kNoIndex; // material whose numbers are `numbers` at any point
+    PointMaterial numbers;
     for (size_t k = 0; k < hits.size(); ++k) {
         const uint32_t index = scene.instances[hits[k].instance].material;
         const Material& material = scene.materials[index];
         const Vec2f& uv = points[k].uv;
-        materials[k] = make_numbers(scene, index, uv);
+        if (index != last) {
+            numbers = make_numbers(scene, index, uv);
+            last = material.metallic_texture || material.roughness_texture ? kNoIndex : index;
+        }
+        materials[k] = numbers;
         if (!material.base_color_texture) continue;
         if (is_smooth(material.base_color_filter) || !std::isfinite(uv.x) || !std::isfinite(uv.y))
             materials[k].base_color = materials[k].base_color * fetch_texture(*material.base_color_texture,
