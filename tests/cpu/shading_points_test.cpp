@@ -89,10 +89,10 @@ void expect_same(const cpu::SurfacePoint& a, const cpu::SurfacePoint& b) {
     EXPECT_EQ(a.patch, b.patch);
 }
 
-void expect_same_points(const Displacement& displacement) {
+void expect_same_points(const Scene& scene) {
     RenderSettings settings;
     settings.surface.level = 5;
-    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(make_scene(displacement), settings);
+    const std::shared_ptr<const PreparedScene> prepared = prepare_scene(scene, settings);
     const std::vector<cpu::TraceHit> hits = make_hits(*prepared, 437);
     for (const Isa isa : test::machine_isas()) {
         settings.device.isa = isa;
@@ -109,6 +109,8 @@ void expect_same_points(const Displacement& displacement) {
     }
 }
 
+void expect_same_points(const Displacement& displacement) { expect_same_points(make_scene(displacement)); }
+
 TEST(SurfacePoints, are_the_same_many_at_once_and_one_by_one) {
     for (const DisplacementSpace space : {DisplacementSpace::object, DisplacementSpace::tangent})
         for (const WrapMode wrap : {WrapMode::clamp, WrapMode::repeat, WrapMode::mirror, WrapMode::black}) {
@@ -120,6 +122,17 @@ TEST(SurfacePoints, are_the_same_many_at_once_and_one_by_one) {
             expect_same_points(displacement);
             if (testing::Test::HasFailure()) return;
         }
+}
+
+TEST(SurfacePoints, are_the_same_in_scenes_of_many_surfaces) {
+    const Displacement displacement =
+        test::make_displacement(test::make_random_map(64, 48, 0.15f, 3), DisplacementSpace::object);
+    Scene scene = make_scene(displacement);
+    for (uint32_t k = 0; k < 20; ++k) {
+        scene.objects.push_back({"one of many", uint32_t(scene.meshes.size()), 0, kNoIndex, {}});
+        scene.meshes.push_back(test::make_torus(4, 3 + k % 5));
+    }
+    expect_same_points(scene);
 }
 
 TEST(SurfacePoints, are_the_same_on_filtered_maps_with_detail_in_the_normals) {

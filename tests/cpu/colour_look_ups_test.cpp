@@ -1,0 +1,157 @@
+// Colours of textures and directions to suns for many points at once, beside one by one.
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cpu/shading/point_material.h"
+#include "cpu/shading/shading_kernels.h"
+#include "cpu/shading/textures.h"
+#include "formulas/basis.h"
+#include "formulas/light_source.h"
+#include "formulas/path.h"
+#include "formulas/sobol.h"
+#include "formulas/warp.h"
+#include "support/bodies.h"
+#include "support/strides.h"
+
+namespace relief {
+namespace {
+
+constexpr size_t kMany = 150; ///< several rounds of four times sixteen, the last one not full
+
+/// At texels' centres, between them, at the border and far outside.
+std::vector<Vec2f> make_uvs() {
+    std::vector<Vec2f> uvs{{0, 0},           {1, 1},         {0.5f, 0.5f}, {-1e-9f, 1 + 1e-6f},
+                           {-3.25f, 17.75f}, {1e30f, -1e30f}};
+    for (uint32_t k = 0; uvs.size() < kMany; ++k)
+        uvs.push_back(scalar::sobol_pair(3, k, 0) * 3.0f - Vec2f{1, 1});
+    return uvs;
+}
+
+std::shared_ptr<Texture> make_colors(uint32_t width, uint32_t height, uint32_t channels, bool has_halves) {
+    auto texture = std::make_shared<Texture>();
+    texture->width = width, texture->height = height, texture->channel_count = channels;
+    for (uint32_t k = 0; k < 4 * width * height; ++k) {
+        const uint32_t value = scalar::hash_uint(k);
+        if (has_halves)
+            texture->halves.push_back(uint16_t(0x3000 + value % 0x1400));
+        else
+            texture->floats.push_back(float(value % 1000) * 1e-3f);
+    }
+    return texture;
+}
+
+void expect_same_colors(const Texture& texture) {
+    const std::vector<Vec2f> uvs = make_uvs();
+    for (const std::string& isa : available_isas())
+        for (const size_t count : {size_t(1), size_t(16), size_t(37), kMany}) {
+            std::vector<Vec3f> colors(count);
+            cpu::find_shading_kernels(isa.c_str()).fetch_texture(texture, uvs.data(), count, colors.data());
+            for (size_t k = 0; k < count; ++k)
+                ASSERT_EQ(colors[k], cpu::fetch_texture(texture, uvs[k])) << isa << ", number " << k;
+        }
+}
+
+TEST(TextureKernels, find_for_many_points_the_colours_of_each) {
+    for (const bool has_halves : {false, true})
+        for (const uint32_t width : {1u, 2u, 7u, 300u})
+            for (const uint32_t channels : {1u, 2u, 3u, 4u}) {
+                const auto texture = make_colors(width, 1 + width / 2, channels, has_halves);
+                expect_same_colors(*texture);
+                if (channels == 1 || channels == 3) expect_same_colors(test::make_narrow(*texture, channels));
+                if (HasFatalFailure()) return;
+            }
+}
+
+TEST(ConeKernels, draw_for_many_points_the_directions_of_each) {
+    std::vector<Vec2f> u{{0, 0}, {0.99999994f, 0.99999994f}};
+    for (uint32_t k = 0; u.size() < kMany; ++k) u.push_back(scalar::sobol_pair(5, k, 0));
+    for (const float cone : {1e-12f, 1e-5f, 0.3f, 1.0f}) {
+        scalar::LightSourceData sun{};
+        sun.kind = scalar::kSourceSun, sun.color = {1, 0.5f, 2}, sun.strength = 3, sun.cone = cone;
+        sun.basis = scalar::make_basis(normalize(Vec3f{0.3f, -0.8f, -0.2f}));
+        for (const std::string& isa : available_isas())
+            for (const size_t count : {size_t(1), size_t(16), size_t(37), kMany}) {
+                std::vector<Vec3f> directions(count);
+                cpu::find_shading_kernels(isa.c_str())
+                    .draw_cone(sun.basis, sun.cone, u.data(), count, directions.data());
+                for (size_t k = 0; k < count; ++k)
+                    ASSERT_EQ(directions[k], scalar::draw_sun(sun, u[k]).direction)
+                        << isa << ", number " << k;
+            }
+    }
+}
+
+/// An object for each of some materials: plain, with a texture of a colour (two share one), of a colour that
+/// is a B-spline, of numbers, and of both.
+Scene make_materials() {
+    Scene scene =
+        test::make_body_scene(test::make_cube_sphere(2), test::make_displacement(make_colors(4, 4, 3, false),
+                                                                                 DisplacementSpace::object));
+    const auto first = make_colors(7, 5, 3, true), second = make_colors(64, 32, 1, false);
+    scene.materials.resize(7);
+    for (size_t k = 0; k < scene.materials.size(); ++k) {
+        const float number = float(k + 1) / 8;
+        scene.materials[k].base_color = {number, 1 - number, 0.5f};
+        scene.materials[k].roughness = number, scene.materials[k].metallic = 1 - number;
+        scene.materials[k].ior = 1 + number, scene.materials[k].emission = {number, 0, 0};
+    }
+    scene.materials[1].base_color_texture = scene.materials[2].base_color_texture = first;
+    scene.materials[3].base_color_texture = second;
+    scene.materials[4].base_color_texture = first;
+    scene.materials[4].base_color_filter = MapFilter::bspline;
+    scene.materials[5].metallic_texture = scene.materials[5].roughness_texture = second;
+    scene.materials[6] = scene.materials[5], scene.materials[6].base_color_texture = first;
+    const Object object = scene.objects[0];
+    scene.objects.clear();
+    for (uint32_t k = 0; k < scene.materials.size(); ++k) {
+        scene.objects.push_back(object);
+        scene.objects.back().material = k;
+    }
+    return scene;
+}
+
+/// Without make_point_materials.
+cpu::PointMaterial find_material(const PreparedScene& scene, uint32_t instance, const Vec2f& uv) {
+    const Material& material = scene.materials[scene.instances[instance].material];
+    cpu::PointMaterial m{material.base_color, material.emission, material.roughness, material.metallic,
+                         material.ior,        kNoIndex,          kNoIndex,           kNoIndex};
+    if (const auto& texture = material.base_color_texture)
+        m.base_color = m.base_color * cpu::fetch_texture(*texture, material.base_color_filter, uv);
+    if (const auto& texture = material.roughness_texture) m.roughness *= cpu::fetch_texture(*texture, uv).x;
+    if (const auto& texture = material.metallic_texture) m.metallic *= cpu::fetch_texture(*texture, uv).x;
+    m.base_color = scalar::limit_color(m.base_color);
+    return m;
+}
+
+TEST(PointMaterials, are_found_for_many_hits_as_for_each) {
+    const RenderSettings settings;
+    const auto scene = prepare_scene(make_materials(), settings);
+    const std::vector<Vec2f> uvs = make_uvs();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::vector<cpu::TraceHit> hits(kMany);
+    std::vector<cpu::SurfacePoint> points(kMany);
+    for (uint32_t k = 0; k < kMany; ++k) {
+        hits[k].instance = scalar::hash_uint(k / 3) % uint32_t(scene->instances.size()); // three in a row
+        points[k].uv = k % 29 == 0 ? Vec2f{nan, 0} : uvs[k];
+    }
+    for (const std::string& isa : available_isas()) {
+        std::vector<cpu::PointMaterial> found(kMany);
+        cpu::make_point_materials(*scene, cpu::find_shading_kernels(isa.c_str()), hits, points, found);
+        for (size_t k = 0; k < kMany; ++k) {
+            const cpu::PointMaterial one = find_material(*scene, hits[k].instance, points[k].uv);
+            ASSERT_EQ(found[k].base_color, one.base_color) << isa << ", number " << k;
+            ASSERT_EQ(found[k].emission, one.emission) << k;
+            ASSERT_EQ(found[k].roughness, one.roughness) << k;
+            ASSERT_EQ(found[k].metallic, one.metallic) << k;
+            ASSERT_EQ(found[k].ior, one.ior) << k;
+        }
+    }
+}
+
+} // namespace
+} // namespace relief
