@@ -54,7 +54,7 @@ void TileTracer::trace_samples(SampleRange samples) {
 void TileTracer::finish_paths() {
     const Timer timer;
     for (uint32_t i = 0; i < paths_.size(); ++i) {
-        const Pixel& pixel = pixel_of(i);
+        const Pixel& pixel = find_pixel(i);
         FilmSample& sample = first_hits_[i];
         sample.radiance = paths_[i].radiance, sample.cost = paths_[i].cost;
         film_.add_sample(pixel.x, pixel.y, sample);
@@ -69,13 +69,13 @@ void TileTracer::start_paths(SampleRange samples) {
     paths_.assign(count, {}), first_hits_.assign(count, {});
     seeds_.resize(count), samples_.resize(count), active_.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
-        seeds_[i] = pixel_of(i).seed, samples_[i] = uint32_t(samples.first) + i % sample_count_;
+        seeds_[i] = find_pixel(i).seed, samples_[i] = uint32_t(samples.first) + i % sample_count_;
         active_[i] = i;
     }
     list_wave_samples();
     sample_2d(scalar::kPixelPair, places_);
     for (size_t i = 0; i < count; ++i)
-        places_[i] = Vec2f{float(pixel_of(i).x), float(pixel_of(i).y)} + places_[i];
+        places_[i] = Vec2f{float(find_pixel(i).x), float(find_pixel(i).y)} + places_[i];
     if (path_lights_.is_on()) path_lights_.start(paths_.size());
     rays_.resize(paths_.size());
     if (!is_pinhole())
@@ -106,7 +106,7 @@ void TileTracer::trace_paths() {
 }
 
 void TileTracer::note_ray(uint32_t path, const TraceRay& ray, float t_end) {
-    footprints_->at(pixel_of(path).x, pixel_of(path).y).add_ray(ray.origin, ray.direction, t_end);
+    footprints_->at(find_pixel(path).x, find_pixel(path).y).add_ray(ray.origin, ray.direction, t_end);
 }
 
 void TileTracer::sample_2d(uint32_t pair, std::vector<Vec2f>& drawn) const {

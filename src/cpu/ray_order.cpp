@@ -30,8 +30,8 @@ uint32_t find_cell(const Vec3f& d) {
     return find_column(v) * kCellsASide + find_column(u);
 }
 
-/// For at least so many members, which keep what they were.
-template <class T> void reserve_members(std::vector<T>& members, size_t count) {
+/// To at least so many members.
+template <class T> void grow_to(std::vector<T>& members, size_t count) {
     if (members.size() < count) members.resize(count);
 }
 
@@ -47,14 +47,14 @@ bool order_by_direction(std::span<const TraceRay> rays, RayOrder& order) {
         return false;
     }
     std::array<uint32_t, kKeyCount + 1> begin{};
-    reserve_members(order.cells, rays.size());
+    grow_to(order.cells, rays.size());
     for (size_t k = 0; k < rays.size(); ++k) {
         order.cells[k] = uint16_t(find_cell(rays[k].direction) + (rays[k].lod_bias > 0 ? kCellCount : 0));
         ++begin[order.cells[k] + 1];
     }
     for (size_t cell = 0; cell < kKeyCount; ++cell) begin[cell + 1] += begin[cell];
     for (uint32_t k = 0; k < rays.size(); ++k) order.places[begin[order.cells[k]]++] = k;
-    reserve_members(order.rays, rays.size());
+    grow_to(order.rays, rays.size());
     for (size_t k = 0; k < rays.size(); ++k) order.rays[k] = rays[order.places[k]];
     return true;
 }
@@ -64,7 +64,7 @@ template <class Found, class Trace>
 void trace_in_order(std::span<const TraceRay> rays, std::span<Found> found, RayOrder& order,
                     std::vector<Found>& in_order, const Trace& trace) {
     if (!order_by_direction(rays, order)) return trace(rays, found);
-    reserve_members(in_order, rays.size());
+    grow_to(in_order, rays.size());
     trace(std::span<const TraceRay>(order.rays).first(rays.size()), std::span(in_order).first(rays.size()));
     for (size_t k = 0; k < rays.size(); ++k) found[order.places[k]] = in_order[k];
 }

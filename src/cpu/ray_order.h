@@ -9,13 +9,12 @@
 
 namespace relief::cpu {
 
-/// Memory of one thread.
+/// Memory of one thread. All but `places` may have more members than there are rays.
 struct RayOrder {
     std::vector<uint16_t> cells;  ///< of directions, by LOD bias
     std::vector<uint32_t> places; ///< of the rays in the list that was given
-    std::vector<TraceRay>
-        rays; ///< in order; there may be more members than rays, as in the others but places
-    std::vector<TraceHit> hits; ///< likewise
+    std::vector<TraceRay> rays;   ///< in order
+    std::vector<TraceHit> hits;   ///< likewise
     std::vector<uint8_t> occluded;
 };
 

@@ -27,7 +27,7 @@ struct alignas(64) Path {
     scalar::LitPoint previous{}; ///< the vertex that the ray left
     float bsdf_pdf = 0;          ///< with which the ray was drawn there
     uint32_t body = kNoIndex;    ///< of solid glass that the ray is in: record of PreparedScene::glass
-    Vec3f radiance{};            ///< as that of FilmSample, and cost
+    Vec3f radiance{};            ///< as in FilmSample, where finish_paths() puts it; likewise cost
     float cost = 1;
 };
 static_assert(sizeof(Path) == 64);
@@ -51,6 +51,7 @@ class TileTracer {
     bool is_pinhole() const { return camera_.aperture_radius == 0; }
     int last_depth() const { return int(scalar::find_last_depth(uint32_t(settings_.image.bounces))); }
     void start_paths(SampleRange samples);
+    void finish_paths();
     void trace_paths();
     float draw_cut_out(uint32_t path, bool is_shadow, uint32_t round) const {
         return scalar::draw_cut_out(seeds_[path], samples_[path], uint32_t(depth_), is_shadow ? 1 : 0, round);
@@ -107,13 +108,12 @@ class TileTracer {
         int x, y;
         uint32_t seed;
     };
-    const Pixel& pixel_of(size_t path) const { return pixels_[path / sample_count_]; }
-    void finish_paths();
+    const Pixel& find_pixel(size_t path) const { return pixels_[path / sample_count_]; }
     std::vector<Pixel> pixels_;             ///< in packets of kPacketEdge squared
     uint32_t sample_count_ = 0;             ///< of each
     int depth_ = 0;                         ///< vertices behind the wave: 0 for camera rays
     std::vector<Path> paths_;               ///< all samples of a pixel after those of the one before
-    std::vector<FilmSample> first_hits_;    ///< of paths_: what does not change behind the first vertex
+    std::vector<FilmSample> first_hits_;    ///< of paths_; radiance and cost only from finish_paths() on
     std::vector<uint32_t> seeds_, samples_; ///< of paths_: of the pixel, and the number of the sample
 
     std::vector<uint32_t> active_; ///< paths still on their way, in order

@@ -1,5 +1,7 @@
 // Colours of textures and directions to suns for many points at once, beside one by one.
-#include <cstring>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
@@ -45,6 +47,22 @@ std::shared_ptr<Texture> make_colors(uint32_t width, uint32_t height, uint32_t c
     return texture;
 }
 
+/// Halves of all kinds: negative and subnormal ones, the greatest, infinities and NaN.
+Texture make_all_halves() {
+    Texture texture;
+    texture.width = 256, texture.height = 64, texture.channel_count = 4;
+    for (uint32_t k = 0; k < 0x10000; ++k) texture.halves.push_back(uint16_t(k * 40503));
+    return texture;
+}
+
+/// NaN have no sign nor payload that would have to be the same.
+bool is_same(const Vec3f& a, const Vec3f& b) {
+    const auto is_same_number = [](float x, float y) {
+        return (std::isnan(x) && std::isnan(y)) || std::bit_cast<uint32_t>(x) == std::bit_cast<uint32_t>(y);
+    };
+    return is_same_number(a.x, b.x) && is_same_number(a.y, b.y) && is_same_number(a.z, b.z);
+}
+
 void expect_same_colors(const Texture& texture) {
     const std::vector<Vec2f> uvs = make_uvs();
     for (const std::string& isa : available_isas())
@@ -52,7 +70,8 @@ void expect_same_colors(const Texture& texture) {
             std::vector<Vec3f> colors(count);
             cpu::find_shading_kernels(isa.c_str()).fetch_texture(texture, uvs.data(), count, colors.data());
             for (size_t k = 0; k < count; ++k)
-                ASSERT_EQ(colors[k], cpu::fetch_texture(texture, uvs[k])) << isa << ", number " << k;
+                ASSERT_TRUE(is_same(colors[k], cpu::fetch_texture(texture, uvs[k])))
+                    << isa << ", number " << k;
         }
 }
 
@@ -65,6 +84,21 @@ TEST(TextureKernels, find_for_many_points_the_colours_of_each) {
                 if (channels == 1 || channels == 3) expect_same_colors(test::make_narrow(*texture, channels));
                 if (HasFatalFailure()) return;
             }
+}
+
+TEST(TextureKernels, take_halves_of_all_kinds_as_they_are) {
+    const Texture texture = make_all_halves();
+    std::vector<Vec2f> centres;
+    for (uint32_t k = 0; k < texture.width * texture.height; ++k)
+        centres.push_back({(float(k % 256) + 0.5f) / 256, 1 - (float(k / 256) + 0.5f) / 64});
+    for (const std::string& isa : available_isas()) {
+        std::vector<Vec3f> colors(centres.size());
+        cpu::find_shading_kernels(isa.c_str())
+            .fetch_texture(texture, centres.data(), centres.size(), colors.data());
+        for (size_t k = 0; k < centres.size(); ++k)
+            ASSERT_TRUE(is_same(colors[k], cpu::fetch_texture(texture, centres[k])))
+                << isa << ", texel " << k;
+    }
 }
 
 TEST(ConeKernels, draw_for_many_points_the_directions_of_each) {
@@ -80,22 +114,22 @@ TEST(ConeKernels, draw_for_many_points_the_directions_of_each) {
                 cpu::find_shading_kernels(isa.c_str())
                     .draw_cone(sun.basis, sun.cone, u.data(), count, directions.data());
                 for (size_t k = 0; k < count; ++k)
-                    ASSERT_EQ(directions[k], scalar::draw_sun(sun, u[k]).direction)
+                    ASSERT_TRUE(is_same(directions[k], scalar::draw_sun(sun, u[k]).direction))
                         << isa << ", number " << k;
             }
     }
 }
 
 /// An object for each of some materials: plain, with a texture of a colour (two share one), of a colour that
-/// is a B-spline, of numbers, and of both.
+/// is a B-spline, of numbers, and of both; with a coat; of glass.
 Scene make_materials() {
     Scene scene =
         test::make_body_scene(test::make_cube_sphere(2), test::make_displacement(make_colors(4, 4, 3, false),
                                                                                  DisplacementSpace::object));
     const auto first = make_colors(7, 5, 3, true), second = make_colors(64, 32, 1, false);
-    scene.materials.resize(7);
+    scene.materials.resize(9);
     for (size_t k = 0; k < scene.materials.size(); ++k) {
-        const float number = float(k + 1) / 8;
+        const float number = float(k + 1) / 10;
         scene.materials[k].base_color = {number, 1 - number, 0.5f};
         scene.materials[k].roughness = number, scene.materials[k].metallic = 1 - number;
         scene.materials[k].ior = 1 + number, scene.materials[k].emission = {number, 0, 0};
@@ -106,6 +140,8 @@ Scene make_materials() {
     scene.materials[4].base_color_filter = MapFilter::bspline;
     scene.materials[5].metallic_texture = scene.materials[5].roughness_texture = second;
     scene.materials[6] = scene.materials[5], scene.materials[6].base_color_texture = first;
+    scene.materials[7].coat_weight = 0.5f;
+    scene.materials[8].transmission_weight = 1, scene.materials[8].base_color_texture = first;
     const Object object = scene.objects[0];
     scene.objects.clear();
     for (uint32_t k = 0; k < scene.materials.size(); ++k) {
@@ -117,9 +153,17 @@ Scene make_materials() {
 
 /// Without make_point_materials.
 cpu::PointMaterial find_material(const PreparedScene& scene, uint32_t instance, const Vec2f& uv) {
-    const Material& material = scene.materials[scene.instances[instance].material];
-    cpu::PointMaterial m{material.base_color, material.emission, material.roughness, material.metallic,
-                         material.ior,        kNoIndex,          kNoIndex,           kNoIndex};
+    const uint32_t index = scene.instances[instance].material;
+    const Material& material = scene.materials[index];
+    const uint32_t glass = scene.glass.record_of_material[index];
+    cpu::PointMaterial m{material.base_color,
+                         material.emission,
+                         material.roughness,
+                         material.metallic,
+                         material.ior,
+                         scene.layers.record_of_material[index],
+                         glass,
+                         glass};
     if (const auto& texture = material.base_color_texture)
         m.base_color = m.base_color * cpu::fetch_texture(*texture, material.base_color_filter, uv);
     if (const auto& texture = material.roughness_texture) m.roughness *= cpu::fetch_texture(*texture, uv).x;
@@ -131,6 +175,7 @@ cpu::PointMaterial find_material(const PreparedScene& scene, uint32_t instance, 
 TEST(PointMaterials, are_found_for_many_hits_as_for_each) {
     const RenderSettings settings;
     const auto scene = prepare_scene(make_materials(), settings);
+    ASSERT_FALSE(scene->layers.empty() || scene->glass.empty());
     const std::vector<Vec2f> uvs = make_uvs();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::vector<cpu::TraceHit> hits(kMany);
@@ -149,6 +194,9 @@ TEST(PointMaterials, are_found_for_many_hits_as_for_each) {
             ASSERT_EQ(found[k].roughness, one.roughness) << k;
             ASSERT_EQ(found[k].metallic, one.metallic) << k;
             ASSERT_EQ(found[k].ior, one.ior) << k;
+            ASSERT_EQ(found[k].layers, one.layers) << k;
+            ASSERT_EQ(found[k].glass, one.glass) << k;
+            ASSERT_EQ(found[k].glass_numbers, one.glass_numbers) << k;
         }
     }
 }

@@ -424,5 +424,45 @@ TEST(Lights, are_drawn_for_many_points_as_for_each) {
     for (const size_t count : counts) EXPECT_GT(count, 3u);
 }
 
+TEST(Lights, are_drawn_from_each_of_several_suns) {
+    Scene scene;
+    add_object(scene, make_floor(10), make_matte(0.5f));
+    scene.lights.resize(3);
+    for (size_t k = 0; k < 3; ++k) {
+        scene.lights[k].direction = normalize(Vec3f{float(k) - 1, -1, 0.5f});
+        scene.lights[k].strength = float(k + 1),
+        scene.lights[k].angle_degrees = 4 * float(k); // the first is hard
+    }
+    RenderSettings settings;
+    const cpu::Tracer tracer(prepare_scene(scene, settings), settings);
+    const cpu::LightSet lights(tracer);
+    const LightTables tables = make_light_tables(tracer.scene(), 0, {});
+    ASSERT_EQ(tables.sources.size(), 3u);
+    Numbers numbers;
+    std::vector<cpu::LightSet::Receiver> at(kMany, {{0, 0, 0}, 0, {0, 1, 0}, 0});
+    std::vector<cpu::LightSet::RandomNumbers> random(kMany);
+    for (auto& some : random) some = {numbers.next(), numbers.next(), numbers.pair()};
+    std::vector<cpu::LightSample> drawn(kMany);
+    lights.draw(at, random, drawn);
+    float power = 0;
+    for (const scalar::LightSourceData& source : tables.sources) power += source.power;
+    std::array<size_t, 3> counts{};
+    for (size_t k = 0; k < kMany; ++k) {
+        size_t picked = 0;
+        for (float below = tables.sources[0].power; below <= random[k].u_light * power && picked < 2;)
+            below += tables.sources[++picked].power;
+        const scalar::LightSourceData& sun = tables.sources[picked];
+        ++counts[picked];
+        const scalar::LightDraw one = scalar::draw_listed_light(sun, {}, random[k].u);
+        const float probability = sun.power / power;
+        EXPECT_EQ(drawn[k].direction, one.direction) << k;
+        EXPECT_EQ(drawn[k].distance, one.distance) << k;
+        EXPECT_EQ(drawn[k].weight, one.weight * (1 / probability)) << k;
+        EXPECT_EQ(drawn[k].pdf, one.pdf * probability) << k;
+        EXPECT_EQ(drawn[k].group, sun.group) << k;
+    }
+    for (const size_t count : counts) EXPECT_GT(count, 10u);
+}
+
 } // namespace
 } // namespace relief

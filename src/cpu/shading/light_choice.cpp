@@ -13,8 +13,9 @@ Vec3f LightChoice::fetch_color(const scalar::LightSourceData& source, const Vec3
 
 float LightChoice::estimate(const scalar::LightSourceData& source, const scalar::LitPoint& at) const {
     if (!is_lit(source, at)) return 0;
+    // Spares a call: estimate_irradiance() of these is their power.
     const bool is_far = source.kind == scalar::kSourceEnvironment || source.kind == scalar::kSourceSun;
-    return is_far ? source.power : scalar::estimate_irradiance(source, at.position); // the same, at once
+    return is_far ? source.power : scalar::estimate_irradiance(source, at.position);
 }
 
 float LightChoice::total_estimate(const scalar::LitPoint& at) const {

@@ -1,5 +1,6 @@
 #include "cpu/shading/lights.h"
 #include "cpu/shading/input_look_up.h"
+#include "cpu/shading/kinds.h"
 #include "formulas/constants.h"
 #include "formulas/glass.h"
 #include "formulas/light.h"
@@ -132,21 +133,23 @@ void LightSet::draw_from_environment(const SharedDraws& shared, std::span<LightS
 /// Directions aside, what is drawn from a sun is the same for all points.
 void LightSet::draw_from_suns(const SharedDraws& shared, std::span<LightSample> drawn) const {
     const SharedDraws::List& list = shared.suns;
-    std::array<Vec3f, kBlock> directions;
-    for (size_t first = 0, end; first < list.count; first = end) {
-        const scalar::LightSourceData& sun = *list.picks[first].source;
-        for (end = first; end < list.count && list.picks[end].source == &sun;) ++end;
-        tracer_.shading_kernels().draw_cone(sun.basis, sun.cone, &list.u[first], end - first,
-                                            directions.data());
+    const auto draw_from_sun = [&](std::span<const uint32_t> members) {
+        const scalar::LightSourceData& sun = *list.picks[members[0]].source;
+        std::array<Vec2f, kBlock> u;
+        std::array<Vec3f, kBlock> directions;
+        for (size_t n = 0; n < members.size(); ++n) u[n] = list.u[members[n]];
+        tracer_.shading_kernels().draw_cone(sun.basis, sun.cone, u.data(), members.size(), directions.data());
         const scalar::LightDraw common = scalar::draw_sun(sun, {});
-        for (size_t n = first; n < end; ++n) {
-            LightSample& sample = drawn[list.points[n]];
+        for (size_t n = 0; n < members.size(); ++n) {
+            LightSample& sample = drawn[list.points[members[n]]];
             static_cast<scalar::LightDraw&>(sample) = common;
-            sample.direction = directions[n - first];
-            sample.pdf *= list.picks[n].probability;
-            sample.weight *= 1 / list.picks[n].probability;
+            sample.direction = directions[n];
+            sample.pdf *= list.picks[members[n]].probability;
+            sample.weight *= 1 / list.picks[members[n]].probability;
         }
-    }
+    };
+    visit_kinds<kBlock>(
+        list.count, [&](size_t k) { return list.picks[k].source; }, draw_from_sun);
 }
 
 void LightSet::complete_weight(std::span<LightSample> drawn, std::span<const uint32_t> which) const {

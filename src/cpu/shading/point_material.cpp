@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "cpu/shading/kinds.h"
 #include "cpu/shading/textures.h"
 #include "formulas/path.h"
 
@@ -11,8 +12,8 @@ namespace relief::cpu {
 
 namespace {
 
-/// With textures of single numbers, and with base_color as its factor.
-PointMaterial make_numbers(const PreparedScene& scene, uint32_t index, const Vec2f& uv) {
+/// With its textures of numbers, but not that of base_color.
+PointMaterial make_plain_material(const PreparedScene& scene, uint32_t index, const Vec2f& uv) {
     const Material& material = scene.materials[index];
     PointMaterial m{material.base_color,
                     material.emission,
@@ -38,22 +39,17 @@ class ColorLookUps {
         textures_[count_] = &texture, uvs_[count_] = uv, points_[count_++] = uint32_t(point);
     }
 
-    template <class Use> void finish(const ShadingKernels& kernels, const Use& use) {
-        while (count_ > 0) {
-            const Texture* texture = textures_[0];
+    /// Calls use(point, color) for all of them.
+    template <class Use> void finish(const ShadingKernels& kernels, const Use& use) const {
+        const auto look_up = [&](std::span<const uint32_t> members) {
             std::array<Vec2f, kMost> uvs;
-            std::array<uint32_t, kMost> points;
             std::array<Vec3f, kMost> colors;
-            size_t size = 0, left = 0;
-            for (size_t n = 0; n < count_; ++n)
-                if (textures_[n] == texture)
-                    uvs[size] = uvs_[n], points[size++] = points_[n];
-                else
-                    textures_[left] = textures_[n], uvs_[left] = uvs_[n], points_[left++] = points_[n];
-            kernels.fetch_texture(*texture, uvs.data(), size, colors.data());
-            for (size_t n = 0; n < size; ++n) use(points[n], colors[n]);
-            count_ = left;
-        }
+            for (size_t n = 0; n < members.size(); ++n) uvs[n] = uvs_[members[n]];
+            kernels.fetch_texture(*textures_[members[0]], uvs.data(), members.size(), colors.data());
+            for (size_t n = 0; n < members.size(); ++n) use(points_[members[n]], colors[n]);
+        };
+        visit_kinds<kMost>(
+            count_, [&](size_t k) { return textures_[k]; }, look_up);
     }
 
   private:
@@ -73,7 +69,7 @@ void make_block(const PreparedScene& scene, const ShadingKernels& kernels, std::
         const Material& material = scene.materials[index];
         const Vec2f& uv = points[k].uv;
         if (index != last) {
-            numbers = make_numbers(scene, index, uv);
+            numbers = make_plain_material(scene, index, uv);
             last = material.metallic_texture || material.roughness_texture ? kNoIndex : index;
         }
         materials[k] = numbers;

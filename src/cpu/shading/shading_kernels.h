@@ -95,10 +95,10 @@ struct ShadingKernels {
     void (*fetch_environment)(const EnvironmentTables&, const Vec2f* positions, size_t count,
                               Vec3f* radiances);
     void (*draw_directions)(const EnvironmentTables&, const Vec2f* u, size_t count, DirectionSample* drawn);
-    /// Unit vectors as scalar::draw_sun draws them from a cone of that height about axes.n.
+    /// Unit vectors as scalar::draw_sun draws them from a cone of that height, above 0, about axes.n.
     void (*draw_cone)(const scalar::Basis& axes, float height, const Vec2f* u, size_t count,
                       Vec3f* directions);
-    /// As fetch_texture(); `uvs` are finite.
+    /// As fetch_texture(texture, uvs[k]), bilinear and repeated; `uvs` are finite.
     void (*fetch_texture)(const Texture& texture, const Vec2f* uvs, size_t count, Vec3f* colors);
     /// rays[k] as scalar::make_pinhole_ray aims it through positions[k], in pixels.
     void (*aim_rays)(const scalar::CameraFrame& camera, const Vec2f* positions, size_t count, TraceRay* rays);

@@ -6,11 +6,27 @@
 #define RELIEF_TEXEL_LANES_INL_H
 #endif
 
+#include <limits>
+
 #include "formulas/lanes-inl.h"
 #include "relief/image.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relief::HWY_NAMESPACE {
+
+/// Halves as floats. Where Highway converts without an instruction, it takes infinities and NaN for numbers
+/// from 65536 on, which no half is: their exponent becomes that of infinities.
+template <class D> HWY_INLINE hn::Vec<D> promote_halves(D d, const uint16_t* halves) {
+    const hn::Rebind<hwy::float16_t, D> d16;
+    const auto value = hn::PromoteTo(d, hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(halves)));
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE2 ||                           \
+    HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+    const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    return hn::IfThenElse(hn::Lt(hn::Abs(value), hn::Set(d, 65536.0f)), value, hn::Or(value, infinity));
+#else
+    return value;
+#endif
+}
 
 /// The fourth lane holds anything where there are three channels; of one channel the rest is 0.
 HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
@@ -20,9 +36,7 @@ HWY_INLINE Lanes4 load_texel(const Texture& texture, size_t index) {
     if (texture.halves.empty()) {
         result.part[0] = hn::LoadU(d, texture.floats.data() + place);
     } else {
-        const hn::Rebind<hwy::float16_t, decltype(d)> d16;
-        const auto* halves = reinterpret_cast<const hwy::float16_t*>(texture.halves.data() + place);
-        result.part[0] = hn::PromoteTo(d, hn::LoadU(d16, halves));
+        result.part[0] = promote_halves(d, texture.halves.data() + place);
     }
     if (texture.stride == 1) result.part[0] = hn::IfThenElseZero(hn::FirstN(d, 1), result.part[0]);
     return result;
@@ -46,10 +60,8 @@ HWY_INLINE Pair load_texel_pair(const Texture& texture, size_t first, size_t sec
 /// As floats; `count` is a multiple of sixteen.
 HWY_INLINE void promote_halves(const uint16_t* halves, size_t count, float* floats) {
     const Lanes16::D d;
-    const hn::Rebind<hwy::float16_t, Lanes16::D> d16;
     for (size_t k = 0; k < count; k += Lanes16::kLanes)
-        hn::Store(hn::PromoteTo(d, hn::LoadU(d16, reinterpret_cast<const hwy::float16_t*>(halves + k))), d,
-                  floats + k);
+        hn::Store(promote_halves(d, halves + k), d, floats + k);
 }
 
 /// Red, green and blue of sixteen texels, one after another in memory, the first at `index`.
