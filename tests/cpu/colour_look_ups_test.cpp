@@ -1,4 +1,5 @@
 // Colours of textures and directions to suns for many points at once, beside one by one.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -18,6 +19,7 @@
 #include "formulas/sobol.h"
 #include "formulas/warp.h"
 #include "support/bodies.h"
+#include "support/hashed_texels.h"
 #include "support/strides.h"
 
 namespace relief {
@@ -32,19 +34,6 @@ std::vector<Vec2f> make_uvs() {
     for (uint32_t k = 0; uvs.size() < kMany; ++k)
         uvs.push_back(scalar::sobol_pair(3, k, 0) * 3.0f - Vec2f{1, 1});
     return uvs;
-}
-
-std::shared_ptr<Texture> make_colors(uint32_t width, uint32_t height, uint32_t channels, bool has_halves) {
-    auto texture = std::make_shared<Texture>();
-    texture->width = width, texture->height = height, texture->channel_count = channels;
-    for (uint32_t k = 0; k < 4 * width * height; ++k) {
-        const uint32_t value = scalar::hash_uint(k);
-        if (has_halves)
-            texture->halves.push_back(uint16_t(0x3000 + value % 0x1400));
-        else
-            texture->floats.push_back(float(value % 1000) * 1e-3f);
-    }
-    return texture;
 }
 
 /// Halves of all kinds: negative and subnormal ones, the greatest, infinities and NaN.
@@ -79,7 +68,7 @@ TEST(TextureKernels, find_for_many_points_the_colours_of_each) {
     for (const bool has_halves : {false, true})
         for (const uint32_t width : {1u, 2u, 7u, 300u})
             for (const uint32_t channels : {1u, 2u, 3u, 4u}) {
-                const auto texture = make_colors(width, 1 + width / 2, channels, has_halves);
+                const auto texture = test::make_hashed_texture(width, 1 + width / 2, channels, has_halves);
                 expect_same_colors(*texture);
                 if (channels == 1 || channels == 3) expect_same_colors(test::make_narrow(*texture, channels));
                 if (HasFatalFailure()) return;
@@ -123,10 +112,11 @@ TEST(ConeKernels, draw_for_many_points_the_directions_of_each) {
 /// An object for each of some materials: plain, with a texture of a colour (two share one), of a colour that
 /// is a B-spline, of numbers, and of both; with a coat; of glass.
 Scene make_materials() {
-    Scene scene =
-        test::make_body_scene(test::make_cube_sphere(2), test::make_displacement(make_colors(4, 4, 3, false),
-                                                                                 DisplacementSpace::object));
-    const auto first = make_colors(7, 5, 3, true), second = make_colors(64, 32, 1, false);
+    Scene scene = test::make_body_scene(
+        test::make_cube_sphere(2),
+        test::make_displacement(test::make_hashed_texture(4, 4, 3, false), DisplacementSpace::object));
+    const auto first = test::make_hashed_texture(7, 5, 3, true),
+               second = test::make_hashed_texture(64, 32, 1, false);
     scene.materials.resize(9);
     for (size_t k = 0; k < scene.materials.size(); ++k) {
         const float number = float(k + 1) / 10;
@@ -169,6 +159,7 @@ cpu::PointMaterial find_material(const PreparedScene& scene, uint32_t instance, 
     if (const auto& texture = material.roughness_texture) m.roughness *= cpu::fetch_texture(*texture, uv).x;
     if (const auto& texture = material.metallic_texture) m.metallic *= cpu::fetch_texture(*texture, uv).x;
     m.base_color = scalar::limit_color(m.base_color);
+    m.roughness = std::clamp(m.roughness, 0.0f, 1.0f), m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     return m;
 }
 

@@ -23,6 +23,7 @@
 #include "prepare/material_glass.h"
 #include "prepare/material_layers.h"
 #include "relief/render.h"
+#include "support/hashed_texels.h"
 #include "support/shading_scenes.h"
 
 namespace relief {
@@ -45,17 +46,8 @@ class Numbers {
 };
 
 Environment make_sky_texture(uint32_t width, uint32_t height, uint32_t channels, bool has_halves) {
-    auto texture = std::make_shared<Texture>();
-    texture->width = width, texture->height = height, texture->channel_count = channels;
-    for (uint32_t k = 0; k < 4 * width * height; ++k) {
-        const uint32_t value = scalar::hash_uint(k);
-        if (has_halves)
-            texture->halves.push_back(uint16_t(0x3000 + value % 0x1400));
-        else
-            texture->floats.push_back(float(value % 1000) * (value % 7 == 0 ? 1.0f : 1e-3f));
-    }
     Environment environment;
-    environment.texture = texture;
+    environment.texture = test::make_hashed_texture(width, height, channels, has_halves);
     environment.color = {1, 0.5f, 0.25f};
     environment.rotate_degrees = 77;
     return environment;
