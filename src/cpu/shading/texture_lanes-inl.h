@@ -74,19 +74,6 @@ struct FourTexelLanes {
     }
 };
 
-/// Calls step(round, first, count - first) per sixteen, in rounds: each step prefetches for the next.
-template <class Round, class... Steps> RELIEF_INLINE void run_rounds(size_t count, Steps... steps) {
-    constexpr size_t kRounds = 4;
-    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
-        Round rounds[kRounds];
-        const auto run = [&](auto step) HWY_ATTR {
-            for (size_t k = 0, first = begin; k < kRounds && first < count; ++k, first += 16)
-                step(rounds[k], first, count - first);
-        };
-        (run(steps), ...);
-    }
-}
-
 /// fetch_texture() at finite places, of a texture that is no B-spline.
 inline void fetch_texture(const Texture& texture, const Vec2f* uvs, size_t count, Vec3f* colors) {
     const Vec2 size{Float(float(texture.width)), Float(float(texture.height))};

@@ -41,5 +41,18 @@ RELIEF_INLINE void store_vectors(const Vec3& vectors, size_t count, Vec3f* targe
     std::memcpy(target, packed, HWY_MIN(count, size_t(16)) * sizeof(Vec3f));
 }
 
+/// Calls step(round, first, count - first) per sixteen, in rounds: each step prefetches for the next.
+template <class Round, class... Steps> RELIEF_INLINE void run_rounds(size_t count, Steps... steps) {
+    constexpr size_t kRounds = 4;
+    for (size_t begin = 0; begin < count; begin += 16 * kRounds) {
+        Round rounds[kRounds];
+        const auto run = [&](auto step) HWY_ATTR {
+            for (size_t k = 0, first = begin; k < kRounds && first < count; ++k, first += 16)
+                step(rounds[k], first, count - first);
+        };
+        (run(steps), ...);
+    }
+}
+
 } // namespace relief::HWY_NAMESPACE::wide
 HWY_AFTER_NAMESPACE();
