@@ -70,7 +70,7 @@ void TileTracer::add_last_emission() {
         if (has_glass_) draw_random();
         for (size_t first = 0; first < active_.size(); first += kBlock) {
             const size_t count = std::min(kBlock, active_.size() - first);
-            meet_materials(first, count);
+            meet_materials(first, count, BaseColor::factor_alone); // emission does not depend on it
             for (size_t n = 0; n < count; ++n)
                 if (!(materials_[n].emission == Vec3f{})) add_emission(first + n, materials_[n].emission);
         }
@@ -228,9 +228,9 @@ float TileTracer::find_lift(size_t k, size_t n) {
 
 /// Of the surfaces that rays from `first` on have hit, vertices of a block, with what glass does to their
 /// paths.
-void TileTracer::meet_materials(size_t first, size_t count) {
+void TileTracer::meet_materials(size_t first, size_t count, BaseColor base_color) {
     make_point_materials(tracer_.scene(), tracer_.shading_kernels(), {&hits_[first], count},
-                         {&points_[first], count}, {materials_.data(), count});
+                         {&points_[first], count}, {materials_.data(), count}, base_color);
     for (size_t n = 0; n < count; ++n)
         if (is_catcher(first + n))
             materials_[n] = kCatcherMaterial;
@@ -253,7 +253,7 @@ void TileTracer::meet_material(size_t k, size_t n) {
 
 /// Fills lanes_ for a block whose lights are drawn.
 void TileTracer::reflect(size_t first, size_t count) {
-    meet_materials(first, count);
+    meet_materials(first, count, BaseColor::with_texture);
     for (size_t n = 0; n < count; ++n) {
         const size_t k = first + n;
         const PointMaterial& m = materials_[n];

@@ -74,7 +74,7 @@ class TileTracer {
     void list_wave_samples();
     size_t shade_block(size_t first, size_t count, size_t next);
     void draw_lights(size_t first, size_t count);
-    void meet_materials(size_t first, size_t count);
+    void meet_materials(size_t first, size_t count, BaseColor base_color);
     void meet_material(size_t k, size_t n);
     void reflect(size_t first, size_t count);
     float find_lift(size_t k, size_t n);

@@ -177,7 +177,8 @@ TEST(PointMaterials, are_found_for_many_hits_as_for_each) {
     }
     for (const std::string& isa : available_isas()) {
         std::vector<cpu::PointMaterial> found(kMany);
-        cpu::make_point_materials(*scene, cpu::find_shading_kernels(isa.c_str()), hits, points, found);
+        cpu::make_point_materials(*scene, cpu::find_shading_kernels(isa.c_str()), hits, points, found,
+                                  cpu::BaseColor::with_texture);
         for (size_t k = 0; k < kMany; ++k) {
             const cpu::PointMaterial one = find_material(*scene, hits[k].instance, points[k].uv);
             ASSERT_EQ(found[k].base_color, one.base_color) << isa << ", number " << k;
@@ -189,6 +190,22 @@ TEST(PointMaterials, are_found_for_many_hits_as_for_each) {
             ASSERT_EQ(found[k].glass, one.glass) << k;
             ASSERT_EQ(found[k].glass_numbers, one.glass_numbers) << k;
         }
+    }
+}
+
+TEST(PointMaterials, leave_textures_of_base_colours_out_where_nobody_asks) {
+    const RenderSettings settings;
+    const auto scene = prepare_scene(make_materials(), settings);
+    std::vector<cpu::TraceHit> hits(scene->instances.size());
+    for (uint32_t k = 0; k < hits.size(); ++k) hits[k].instance = k;
+    const std::vector<cpu::SurfacePoint> points(hits.size());
+    std::vector<cpu::PointMaterial> found(hits.size());
+    cpu::make_point_materials(*scene, cpu::find_shading_kernels(available_isas()[0].c_str()), hits, points,
+                              found, cpu::BaseColor::factor_alone);
+    for (uint32_t k = 0; k < hits.size(); ++k) {
+        const Material& material = scene->materials[scene->instances[k].material];
+        EXPECT_EQ(found[k].base_color, material.base_color) << k;
+        EXPECT_EQ(found[k].emission, material.emission) << k;
     }
 }
 

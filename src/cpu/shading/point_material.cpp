@@ -60,7 +60,8 @@ class ColorLookUps {
 };
 
 void make_block(const PreparedScene& scene, const ShadingKernels& kernels, std::span<const TraceHit> hits,
-                std::span<const SurfacePoint> points, std::span<PointMaterial> materials) {
+                std::span<const SurfacePoint> points, std::span<PointMaterial> materials,
+                BaseColor base_color) {
     ColorLookUps colors;
     uint32_t last = kNoIndex; // material whose numbers are `numbers` at any point
     PointMaterial numbers;
@@ -73,7 +74,7 @@ void make_block(const PreparedScene& scene, const ShadingKernels& kernels, std::
             last = material.metallic_texture || material.roughness_texture ? kNoIndex : index;
         }
         materials[k] = numbers;
-        if (!material.base_color_texture) continue;
+        if (!material.base_color_texture || base_color == BaseColor::factor_alone) continue;
         if (is_smooth(material.base_color_filter) || !std::isfinite(uv.x) || !std::isfinite(uv.y))
             materials[k].base_color = materials[k].base_color * fetch_texture(*material.base_color_texture,
                                                                               material.base_color_filter, uv);
@@ -90,11 +91,11 @@ void make_block(const PreparedScene& scene, const ShadingKernels& kernels, std::
 
 void make_point_materials(const PreparedScene& scene, const ShadingKernels& kernels,
                           std::span<const TraceHit> hits, std::span<const SurfacePoint> points,
-                          std::span<PointMaterial> materials) {
+                          std::span<PointMaterial> materials, BaseColor base_color) {
     for (size_t first = 0; first < hits.size(); first += ColorLookUps::kMost) {
         const size_t count = std::min(ColorLookUps::kMost, hits.size() - first);
         make_block(scene, kernels, hits.subspan(first, count), points.subspan(first, count),
-                   materials.subspan(first, count));
+                   materials.subspan(first, count), base_color);
     }
 }
 
