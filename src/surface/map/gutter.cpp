@@ -67,10 +67,13 @@ class GutterFinder {
         if (!(size < kLongestBorder)) return;
         const int count = int(std::ceil(size / kStep)) + 1;
         constexpr int64_t kReach = GutterFill::kReach;
+        int64_t last_x = 0, last_y = 0;
         for (int k = 0; k <= count; ++k) {
             const double s = double(k) / count;
             const auto x = int64_t(std::floor(a.x + (b.x - a.x) * s - 0.5));
             const auto y = int64_t(std::floor(a.y + (b.y - a.y) * s - 0.5));
+            if (k > 0 && x == last_x && y == last_y) continue;
+            last_x = x, last_y = y;
             for (int64_t row = y; row <= y + 1; ++row)
                 for (int64_t column = x; column <= x + 1; ++column)
                     visit_texel(column, row, [&](int64_t i, int64_t j) { read_.set(i, j); });
