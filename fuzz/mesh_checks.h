@@ -34,7 +34,7 @@ inline void require(bool holds) {
 /// The surface has its vertices in range and in the boxes of their patches, or the mesh is refused.
 inline void check_surface(const Mesh& mesh, const Displacement* displacement) {
     try {
-        const Surface surface = make_surface(mesh, displacement, Affine{});
+        const Surface surface = make_surface(mesh, displacement, {});
         for (const Quad& quad : surface.quads)
             for (const uint32_t vertex : quad.vertex)
                 require(vertex < surface.vertex_count() &&

@@ -28,7 +28,7 @@ namespace relief::cli {
 
 namespace {
 
-constexpr int kUsualLevel = 5;
+constexpr int kUsualLevel = 5, kUsualSubdivision = 3;
 
 struct ConvertOptions {
     std::string input, output, mesh, displacement_map;
@@ -156,7 +156,8 @@ Scene load_surface(const ConvertOptions& options) {
     scene.displacement_map = options.displacement_map;
     scene.map = options.from;
     scene.subdivision = options.subdivision;
-    scene.subdivision_level = options.subdivision_level;
+    // Without a view no level can be chosen by it.
+    if (options.subdivision) scene.subdivision_level = options.subdivision_level.value_or(kUsualSubdivision);
     return load_mesh_scene(options.input, scene);
 }
 

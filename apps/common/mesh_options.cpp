@@ -39,10 +39,12 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
         [&options](const std::string& text) { options.displacement_map = text; });
     add("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",
         [&options](const std::string& text) { options.subdivision = text; });
-    add("--subdivision-level", "N", "2^N x 2^N patches a quad of the mesh; default 3",
+    add("--subdivision-level", "auto|N",
+        "patches per quad: 2^N x 2^N, or few and near enough (default: auto)",
         [&options](const std::string& text) {
             options.subdivision_level =
-                int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
+                text == "auto" ? kAutoSubdivisionLevel
+                               : int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
         });
     add("--filter", "NAME", "of the map: cubic or bspline up close, mip from afar, none (default)",
         [&options](const std::string& text) { options.map.filter = text; });
@@ -68,7 +70,7 @@ void refuse_without_map(const MeshSceneOptions& options, const std::vector<Given
 
 void check_mesh_options(const MeshSceneOptions& options) {
     if (options.subdivision_level && !options.subdivision)
-        throw Error(ErrorKind::usage, {"--subdivision-level says nothing without a scheme",
+        throw Error(ErrorKind::usage, {"--subdivision-level needs a subdivision scheme",
                                        "--subdivision-level", "--subdivision catmark"});
     const MapOptions& map = options.map;
     refuse_without_map(options, {{map.filter.has_value(), "--filter"},

@@ -109,7 +109,7 @@ struct MeshSceneOptions {
     std::filesystem::path displacement_map; ///< empty: none; may hold `<UDIM>`
     MapOptions map;
     std::optional<std::string> subdivision; ///< scheme: none, bilinear or catmark
-    std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel]
+    std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel], or kAutoSubdivisionLevel (default)
     std::filesystem::path environment;      ///< empty: a soft sky and a sun
     MeshReaderSettings reader;
 };

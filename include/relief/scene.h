@@ -22,6 +22,7 @@ inline constexpr int kMaxBounces = 1000;
 inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
+inline constexpr int kAutoSubdivisionLevel = -1;
 inline constexpr float kMaxNormalScale = 1000;
 inline constexpr float kMaxLensShift = 100;     ///< either way
 inline constexpr float kMaxShutter = 16;        ///< frames from that of the picture, either way
@@ -54,8 +55,9 @@ enum class CreaseRule { obey, ignore };
 struct Subdivision {
     SubdivisionScheme scheme = SubdivisionScheme::none;
     /// Every quad becomes 2^level x 2^level patches, [0, kMaxSubdivisionLevel]; a mesh with other faces than
-    /// quads is subdivided at least once.
-    int level = 3;
+    /// quads is subdivided at least once. kAutoSubdivisionLevel: faces are cut only where the surface would
+    /// be more than a tenth of a pixel away from the limit surface otherwise.
+    int level = kAutoSubdivisionLevel;
     UvRule uv = UvRule::smooth;
     BoundaryRule boundary = BoundaryRule::edge_and_corner;
     CreaseRule creases = CreaseRule::obey;

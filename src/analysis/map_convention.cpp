@@ -184,7 +184,7 @@ void guess_space_by_normals(const MapSamples& samples, const MapStatistics& stat
 /// Nothing where the mesh and the map do not go together; inspection of the mesh says why.
 std::optional<Surface> try_surface(const Mesh& mesh, const Displacement& map) {
     try {
-        return make_surface(mesh, &map, Affine{});
+        return make_surface(mesh, &map, {});
     } catch (const Error&) {
         return std::nullopt;
     }

@@ -87,11 +87,15 @@ std::string describe_base(const Mesh& mesh) {
     if (subdivision.scheme == SubdivisionScheme::none)
         return "the mesh as it is, level 0: a map baked against another level needs that level's mesh, or "
                "subdivision";
-    const int side = 1 << subdivision.level;
-    return fmt::format("{}, level {}: {} x {} patches a quad; uv {}, boundary {}, {} creases {}",
+    const int side = 1 << std::max(subdivision.level, 0);
+    const std::string level =
+        subdivision.level == kAutoSubdivisionLevel
+            ? "level auto: patches within a tenth of a pixel of it"
+            : fmt::format("level {}: {} x {} patches per quad", subdivision.level, side, side);
+    return fmt::format("{}, {}; uv {}, boundary {}, {} creases {}",
                        subdivision.scheme == SubdivisionScheme::catmark ? "catmark limit surface"
                                                                         : "bilinear",
-                       subdivision.level, side, side, subdivision.uv == UvRule::smooth ? "smooth" : "linear",
+                       level, subdivision.uv == UvRule::smooth ? "smooth" : "linear",
                        subdivision.boundary == BoundaryRule::edge_only ? "edge-only" : "edge-and-corner",
                        mesh.creases.size(), subdivision.creases == CreaseRule::obey ? "obeyed" : "ignored");
 }

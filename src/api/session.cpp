@@ -97,9 +97,16 @@ struct Session::Implementation {
         need_engine();
         settings = changed;
         film.reset();
-        if (!engine->change_view(editor->change_view(camera, settings, scene_hash), settings.image))
-            start_engine();
+        if (!show_view(camera, settings, scene_hash)) start_engine();
         prepare_s += timer.seconds();
+    }
+
+    /// False: the engine does not follow.
+    bool show_view(const Camera& camera, const RenderSettings& changed, uint64_t scene_hash) {
+        const std::vector<SurfaceChange> changes = editor->change_view(camera, changed, scene_hash);
+        const bool is_replaced = std::ranges::any_of(changes, &SurfaceChange::is_replaced);
+        return is_replaced ? engine->change_scene(changes, changed.image)
+                           : engine->change_view(changes, changed.image);
     }
 
     void change_scene(SceneUpdate update, const ImageSettings& image) {
@@ -127,8 +134,7 @@ struct Session::Implementation {
         need_engine();
         RenderSettings changed = settings;
         changed.image = image;
-        if (!update.scene)
-            return engine->change_view(editor->change_view(update.camera, changed, update.scene_hash), image);
+        if (!update.scene) return show_view(update.camera, changed, update.scene_hash);
         is_lost = true;
         update.scene->hash = update.scene_hash;
         const std::optional<std::vector<SurfaceChange>> changes =

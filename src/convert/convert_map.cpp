@@ -210,7 +210,7 @@ Surface make_framed_surface(const Displacement& map, const Displacement& meant, 
     framed.filter = MapFilter::none, framed.dequantize = false; // only frames are asked for
     // Tangents are of no use to a height, and not every mesh can have those that are requested.
     if (meant.type == DisplacementType::vector) framed.type = DisplacementType::vector;
-    return make_surface(mesh, &framed, Affine{});
+    return make_surface(mesh, &framed, {});
 }
 
 } // namespace

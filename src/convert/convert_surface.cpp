@@ -154,7 +154,7 @@ void add_plain(const Mesh& source, const Object& object, Mesh& mesh) {
 
 /// The faces of a subdivided mesh that is not displaced.
 Mesh make_smooth_mesh(const Mesh& source) {
-    const Surface surface = make_surface(source, nullptr, Affine{});
+    const Surface surface = make_surface(source, nullptr, {});
     Mesh mesh;
     mesh.positions = surface.positions, mesh.uvs = surface.uvs;
     for (const Quad quad : surface.quads) {

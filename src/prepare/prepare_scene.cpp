@@ -41,22 +41,6 @@ void drop_detail(PreparedScene& scene) {
         for (uint32_t& word : surface.mips) word &= (1u << scalar::kDetailShift) - 1;
 }
 
-/// Of the surfaces that some normal map or material with a direction lies on.
-void add_tangents(PreparedScene& prepared) {
-    std::set<uint32_t> mapped;
-    for (const Instance& instance : prepared.instances)
-        if (const Material& material = prepared.materials[instance.material];
-            has_normal_map(material) || is_anisotropic(material))
-            mapped.insert(instance.surface);
-    const std::vector<uint32_t> list(mapped.begin(), mapped.end());
-    parallel_for("tangents", list.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) {
-            Surface& surface = prepared.surfaces[list[k]];
-            surface.corner_tangents = make_corner_tangents(surface);
-        }
-    });
-}
-
 /// Of surfaces that are not tessellated yet.
 Terminators find_terminators(const PreparedScene& scene) {
     const auto has = [&](bool has_displacement) {
@@ -101,6 +85,13 @@ void prepare_lights(Scene& scene, const std::vector<std::string>& layers, Prepar
         layers);
 }
 
+/// Keeps the displacements without their images, of which an editor makes its own.
+void keep_conventions(const Scene& scene, SceneParts& parts) {
+    parts.displacements = scene.displacements;
+    for (Displacement& displacement : parts.displacements)
+        for (MapTile& tile : displacement.tiles) tile.texture = nullptr;
+}
+
 /// Everything of a scene that is not tessellated. `before` may be null, `polygons` is then what becomes of
 /// those of the scene.
 std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& settings, SceneOrigin origin,
@@ -117,6 +108,7 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
         parts.materials = scene.materials, parts.displacements = scene.displacements;
         parts.users = list_users(scene);
     }
+    prepared.levels = make_level_config(scene.camera, settings);
     if (same.materials)
         take_over_materials(*before->prepared.scene, prepared);
     else
@@ -132,14 +124,14 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
     for (size_t k = 0; k < same.meshes.size(); ++k)
         if (same.meshes[k]) parts.taken_off[k] = before->taken_off[k];
     prepare_maps(scene, same, before, parts.prepared);
-    std::vector<SurfaceChange> changes =
-        make_surfaces(scene, list, same, before, polygons, prepared.surfaces);
+    std::vector<SurfaceChange> changes = make_surfaces(scene, list, same, before, polygons, parts);
+    if (polygons == Polygonal::keep_for_views) keep_conventions(scene, parts);
     share_mips(scene, list.numbers, prepared);
     add_tangents(prepared);
     if (before) prepared.origin = before->prepared.scene->origin;
     place_instances(scene, parts.taken_off, before ? SceneOrigin::given : origin, prepared);
     parts.surfaces = list.numbers;
-    if (polygons == Polygonal::keep) parts.meshes = std::move(scene.meshes);
+    if (polygons != Polygonal::free) parts.meshes = std::move(scene.meshes);
     return changes;
 }
 
@@ -183,6 +175,21 @@ void add_space_warnings(PreparedScene& prepared) {
 }
 
 } // namespace
+
+void add_tangents(PreparedScene& prepared) {
+    std::set<uint32_t> mapped;
+    for (const Instance& instance : prepared.instances)
+        if (const Material& material = prepared.materials[instance.material];
+            has_normal_map(material) || is_anisotropic(material))
+            mapped.insert(instance.surface);
+    const std::vector<uint32_t> list(mapped.begin(), mapped.end());
+    parallel_for("tangents", list.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            Surface& surface = prepared.surfaces[list[k]];
+            surface.corner_tangents = make_corner_tangents(surface);
+        }
+    });
+}
 
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface) {
     std::vector<const LevelField*> levels;

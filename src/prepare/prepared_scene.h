@@ -92,6 +92,9 @@ struct PreparedScene {
     std::vector<std::string> warnings;
 };
 
+/// Makes the tangents of surfaces that normal maps or materials with a direction are on.
+void add_tangents(PreparedScene& prepared);
+
 /// Chooses the copies of maps that the surfaces read, by the levels of their instances.
 std::vector<uint32_t> choose_scene_mips(const PreparedScene& scene, uint32_t surface);
 

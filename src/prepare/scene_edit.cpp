@@ -15,6 +15,7 @@
 #include "prepare/editable_scene.h"
 #include "prepare/local_origins.h"
 #include "prepare/scene_levels.h"
+#include "prepare/scene_surfaces.h"
 #include "relief/error.h"
 #include "surface/map/displacement_map.h"
 #include "surface/patch/map_edit.h"
@@ -85,7 +86,7 @@ void refuse_tessellated(const SurfaceSettings& settings) {
 SceneEditor::SceneEditor(Scene scene, const RenderSettings& settings, SessionUse use)
     : lod_(settings.surface.lod), hash_(scene.hash) {
     refuse_tessellated(settings.surface);
-    const Polygonal polygons = use == SessionUse::scenes ? Polygonal::keep : Polygonal::free;
+    const Polygonal polygons = use == SessionUse::scenes ? Polygonal::keep : Polygonal::keep_for_views;
     parts_ = prepare_scene_parts(std::move(scene), settings, SceneOrigin::camera, polygons);
     scene_ = parts_.prepared.scene, mips_ = parts_.prepared.mips;
     if (use != SessionUse::scenes) own_maps();
@@ -314,18 +315,29 @@ std::vector<SurfaceChange> SceneEditor::apply(const CheckedEdit& edit) {
 std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const RenderSettings& settings,
                                                     uint64_t scene_hash) {
     PreparedScene& scene = *scene_;
+    const std::vector<uint32_t> remade = follow_view(parts_, make_level_config(camera, settings));
+    for (const uint32_t surface : remade) {
+        update_reach(scene, surface);
+        for (Instance& instance : scene.instances)
+            if (instance.surface == surface) instance.lines = nullptr;
+    }
+    if (!remade.empty()) add_tangents(scene);
     scene.camera = camera;
     scene.camera.from = camera.from - scene.origin, scene.camera.to = camera.to - scene.origin;
     scene.width = settings.image.width, scene.height = settings.image.height;
     update_scene_levels(scene, settings, ViewsToCome::many);
     std::vector<SurfaceChange> changes;
     for (uint32_t k = 0; k < scene.surfaces.size(); ++k)
-        if (scene.surfaces[k].has_displacement)
+        if (scene.surfaces[k].has_displacement && std::ranges::find(remade, k) == remade.end())
             changes.push_back({k, std::vector<uint8_t>(scene.surfaces[k].patch_count()), {}});
     update_mips(changes);
     std::erase_if(changes, [](const SurfaceChange& c) {
         return std::ranges::find(c.is_changed, 1) == c.is_changed.end();
     });
+    for (const uint32_t surface : remade) {
+        scene.surfaces[surface].mips = choose_scene_mips(scene, surface);
+        changes.push_back({surface, {}, {}, true});
+    }
     for (SurfaceChange& change : changes) change.looks_different = change.is_changed;
     scene.may_enclose_camera = may_enclose_camera(scene);
     hash_ = scene_hash != 0 ? scene_hash : hash_view(hash_, camera);

@@ -7,8 +7,6 @@
 
 namespace relief {
 
-namespace {
-
 LevelFieldConfig make_level_config(const Camera& camera, const RenderSettings& settings) {
     LevelFieldConfig config;
     config.fixed_level = settings.surface.level == kAutoLevel ? -1 : settings.surface.level;
@@ -18,8 +16,6 @@ LevelFieldConfig make_level_config(const Camera& camera, const RenderSettings& s
         float(2 * std::tan(camera.fov_degrees * std::numbers::pi / 360) / settings.image.height);
     return config;
 }
-
-} // namespace
 
 void update_scene_levels(PreparedScene& scene, const RenderSettings& settings, ViewsToCome views) {
     scene.levels = make_level_config(scene.camera, settings);

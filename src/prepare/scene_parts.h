@@ -9,6 +9,7 @@
 
 #include "prepare/editable_scene.h"
 #include "prepare/surface_change.h"
+#include "prepare/surface_recipe.h"
 
 namespace relief {
 
@@ -25,6 +26,7 @@ struct SceneParts {
     std::vector<std::vector<uint32_t>> users; ///< meshes of each displacement, rising
     std::vector<Material> materials;          ///< as they were given
     SurfaceNumbers surfaces;
+    std::vector<SurfaceRecipe> recipes; ///< per surface
 };
 
 /// Whether a mesh is left out because it is as before (SceneUpdate::scene).
@@ -42,7 +44,9 @@ struct SameParts {
 /// under that number and name. `before` null: nothing is the same.
 SameParts find_same_parts(Scene& scene, SceneParts* before);
 
-enum class Polygonal { free, keep }; ///< what becomes of the polygons of meshes once surfaces are made
+/// What becomes of the polygons of meshes once surfaces are made: freed, kept where another view may ask for
+/// a finer subdivision, or kept.
+enum class Polygonal { free, keep_for_views, keep };
 
 /// As prepare_scene(). With `keep`, prepare_next_scene() can take over from the result, unless surfaces are
 /// tessellated.

@@ -69,11 +69,16 @@ void add_uv_sets(const std::vector<int>& numbers, std::vector<int>& list) {
         if (std::ranges::find(list, number) == list.end()) list.push_back(number);
 }
 
+SurfaceContext make_context(const SurfaceRecipe& recipe, PyramidCache& pyramids) {
+    return {recipe.object_from_world, &pyramids, recipe.uv_sets, recipe.tolerance};
+}
+
 /// Makes the surfaces of one scene, of several meshes at once.
 class SurfaceMaker {
   public:
-    SurfaceMaker(const Scene& scene, const SurfaceList& list, const SameParts& same, SceneParts* before)
-        : scene_(scene), list_(list), same_(same), before_(before) {
+    SurfaceMaker(const Scene& scene, const SameParts& same, SceneParts* before, const LevelFieldConfig& view,
+                 std::vector<SurfaceRecipe>& recipes)
+        : scene_(scene), same_(same), before_(before), view_(view), recipes_(recipes) {
         if (!before) return;
         for (const Surface& surface : before->prepared.scene->surfaces)
             for (const DisplacementMap::Tile& tile : surface.map.tiles)
@@ -81,33 +86,43 @@ class SurfaceMaker {
     }
 
     Surface make(const SurfaceKey& key, SurfaceChange& change) {
-        const Object& object = scene_.objects[list_.first_object[change.surface]];
-        const std::vector<int>& uv_sets = list_.uv_sets[change.surface];
+        SurfaceRecipe& recipe = recipes_[change.surface];
         const Displacement* displacement =
-            object.displacement == kNoIndex ? nullptr : &scene_.displacements[object.displacement];
-        const Affine object_from_world = *invert(object.world_from_object);
-        std::optional<Surface> kept = take(key, uv_sets);
+            recipe.displacement == kNoIndex ? nullptr : &scene_.displacements[recipe.displacement];
+        choose_tolerance(displacement, recipe);
+        std::optional<Surface> kept = take(key, recipe);
         if (!kept) {
             change.is_replaced = true;
-            return make_surface(scene_.meshes[object.mesh], displacement, object_from_world, &pyramids_,
-                                uv_sets);
+            return make_surface(scene_.meshes[recipe.mesh], displacement, make_context(recipe, pyramids_));
         }
         kept->corner_tangents.clear();
-        if (displacement) change_map(*displacement, object_from_world, *kept, change);
+        if (displacement) change_map(*displacement, recipe.object_from_world, *kept, change);
         return std::move(*kept);
     }
 
   private:
     /// The surface of a key before, if nothing but its map may differ.
-    std::optional<Surface> take(const SurfaceKey& key, const std::vector<int>& uv_sets) const {
+    std::optional<Surface> take(const SurfaceKey& key, const SurfaceRecipe& recipe) const {
         const auto [mesh, displacement, object] = key;
         if (!before_ || !same_.meshes[mesh] || (displacement != kNoIndex && !same_.bases[displacement]))
             return std::nullopt;
         const auto found = before_->surfaces.find(key);
         if (found == before_->surfaces.end()) return std::nullopt;
-        if (!has_uv_sets(before_->prepared.scene->surfaces[found->second], scene_.meshes[mesh], uv_sets))
+        Surface& surface = before_->prepared.scene->surfaces[found->second];
+        if (!has_uv_sets(surface, scene_.meshes[mesh], recipe.uv_sets)) return std::nullopt;
+        if (is_subdivided_by_view(scene_.meshes[mesh]) &&
+            !is_same_base(before_->recipes[found->second].tolerance, recipe.tolerance, surface.base_reserve))
             return std::nullopt;
-        return std::move(before_->prepared.scene->surfaces[found->second]);
+        return std::move(surface);
+    }
+
+    void choose_tolerance(const Displacement* displacement, SurfaceRecipe& recipe) {
+        if (!is_subdivided_by_view(scene_.meshes[recipe.mesh])) return;
+        if (displacement)
+            recipe.reach = find_longest_displacement(
+                make_displacement_map(*displacement, recipe.object_from_world, pyramids_));
+        recipe.tolerance =
+            choose_base_tolerance(scene_.meshes[recipe.mesh], recipe.places, recipe.reach, view_);
     }
 
     void change_map(const Displacement& displacement, const Affine& object_from_world, Surface& surface,
@@ -120,11 +135,44 @@ class SurfaceMaker {
     }
 
     const Scene& scene_;
-    const SurfaceList& list_;
     const SameParts& same_;
     SceneParts* before_;
+    const LevelFieldConfig& view_;
+    std::vector<SurfaceRecipe>& recipes_;
     PyramidCache pyramids_;
 };
+
+std::vector<SurfaceRecipe> make_recipes(const Scene& scene, const SurfaceList& list,
+                                        const std::vector<Vec3f>& taken_off) {
+    std::vector<SurfaceRecipe> recipes(list.numbers.size());
+    for (const auto& [key, surface] : list.numbers) {
+        SurfaceRecipe& recipe = recipes[surface];
+        recipe.mesh = std::get<0>(key), recipe.displacement = std::get<1>(key);
+        recipe.object_from_world = *invert(scene.objects[list.first_object[surface]].world_from_object);
+        recipe.uv_sets = list.uv_sets[surface];
+    }
+    for (uint32_t k = 0; k < scene.objects.size(); ++k) {
+        Affine place = scene.objects[k].world_from_object;
+        place.translation = transform_point(place, taken_off[scene.objects[k].mesh]);
+        recipes[list.numbers.at(make_key(scene, k))].places.push_back(place);
+    }
+    return recipes;
+}
+
+/// With the map of the surface before, which may have been edited.
+Surface remake_surface(const SceneParts& parts, const SurfaceRecipe& recipe, Surface& before) {
+    const Mesh& mesh = parts.meshes[recipe.mesh];
+    PyramidCache pyramids;
+    if (recipe.displacement == kNoIndex) return make_surface(mesh, nullptr, make_context(recipe, pyramids));
+    Displacement displacement = parts.displacements[recipe.displacement];
+    for (size_t k = 0; k < before.map.tiles.size(); ++k) {
+        displacement.tiles[k].texture = before.map.tiles[k].texture;
+        pyramids.keep(before.map.tiles[k].texture, before.map.tiles[k].pyramid);
+    }
+    Surface surface = make_surface(mesh, &displacement, make_context(recipe, pyramids));
+    for (size_t k = 0; k < before.map.tiles.size(); ++k) surface.map.tiles[k].mips = before.map.tiles[k].mips;
+    return surface;
+}
 
 } // namespace
 
@@ -148,13 +196,14 @@ SurfaceList list_surfaces(const Scene& scene, const std::vector<Material>& mater
 }
 
 std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, const SameParts& same,
-                                         SceneParts* before, Polygonal polygons,
-                                         std::vector<Surface>& surfaces) {
+                                         SceneParts* before, Polygonal polygons, SceneParts& parts) {
+    std::vector<Surface>& surfaces = parts.prepared.scene->surfaces;
     std::vector<std::vector<SurfaceKey>> keys_of_mesh(scene.meshes.size());
     for (const auto& [key, surface] : list.numbers) keys_of_mesh[std::get<0>(key)].push_back(key);
     std::vector<SurfaceChange> changes(list.numbers.size());
     surfaces.resize(list.numbers.size());
-    SurfaceMaker maker(scene, list, same, before);
+    parts.recipes = make_recipes(scene, list, parts.taken_off);
+    SurfaceMaker maker(scene, same, before, parts.prepared.scene->levels, parts.recipes);
     parallel_for("make_surfaces", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
         for (size_t mesh = begin; mesh < end; ++mesh) {
             for (const SurfaceKey& key : keys_of_mesh[mesh]) {
@@ -162,10 +211,33 @@ std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, 
                 changes[surface].surface = surface;
                 surfaces[surface] = maker.make(key, changes[surface]);
             }
-            if (polygons == Polygonal::free) release_mesh(scene, uint32_t(mesh));
+            const bool is_kept = polygons == Polygonal::keep || (polygons == Polygonal::keep_for_views &&
+                                                                 is_subdivided_by_view(scene.meshes[mesh]));
+            if (!is_kept) release_mesh(scene, uint32_t(mesh));
         }
     });
     return changes;
+}
+
+std::vector<uint32_t> follow_view(SceneParts& parts, const LevelFieldConfig& config) {
+    std::vector<Surface>& surfaces = parts.prepared.scene->surfaces;
+    std::vector<uint32_t> remade;
+    for (uint32_t k = 0; k < surfaces.size(); ++k) {
+        SurfaceRecipe& recipe = parts.recipes[k];
+        const Mesh& mesh = parts.meshes[recipe.mesh];
+        if (!is_subdivided_by_view(mesh)) continue;
+        BaseTolerance tolerance = choose_base_tolerance(mesh, recipe.places, recipe.reach, config);
+        if (is_same_base(recipe.tolerance, tolerance, surfaces[k].base_reserve)) continue;
+        recipe.tolerance = std::move(tolerance);
+        remade.push_back(k);
+    }
+    parallel_for("surfaces of another view", remade.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            Surface& surface = surfaces[remade[k]];
+            surface = remake_surface(parts, parts.recipes[remade[k]], surface);
+        }
+    });
+    return remade;
 }
 
 } // namespace relief

@@ -19,10 +19,13 @@ struct SurfaceList {
 SurfaceList list_surfaces(const Scene& scene, const std::vector<Material>& materials,
                           std::vector<Instance>& instances);
 
-/// What surfaces are made of is moved out of `before`; the result tells what of each differs from it,
-/// patches of other mips aside.
+/// Makes the surfaces and recipes of `parts`, whose taken_off and view are known. What surfaces are made of
+/// is moved out of `before`; the result tells what of each differs from it, patches of other mips aside.
 std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, const SameParts& same,
-                                         SceneParts* before, Polygonal polygons,
-                                         std::vector<Surface>& surfaces);
+                                         SceneParts* before, Polygonal polygons, SceneParts& parts);
+
+/// Makes those surfaces anew that the view of `config` needs finer or coarser; meshes, displacements and
+/// recipes are those of `parts`. Returns their numbers.
+std::vector<uint32_t> follow_view(SceneParts& parts, const LevelFieldConfig& config);
 
 } // namespace relief

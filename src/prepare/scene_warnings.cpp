@@ -32,7 +32,9 @@ constexpr int kLevelForCreases = 2;
 /// Semi-sharp creases that are wider than nothing at the level of their mesh are fitted there, not exact.
 void warn_of_creases(const Mesh& mesh, std::vector<std::string>& warnings) {
     const Subdivision& subdivision = mesh.subdivision;
-    if (subdivision.scheme != SubdivisionScheme::catmark || subdivision.creases != CreaseRule::obey) return;
+    if (subdivision.scheme != SubdivisionScheme::catmark || subdivision.creases != CreaseRule::obey ||
+        subdivision.level == kAutoSubdivisionLevel)
+        return;
     float sharpest = 0;
     for (const Crease& crease : mesh.creases)
         if (crease.sharpness < kInfiniteSharpness) sharpest = std::max(sharpest, crease.sharpness);

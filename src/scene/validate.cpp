@@ -150,8 +150,9 @@ void validate_mesh(const Mesh& mesh, size_t index) {
     for (size_t i = 0; i < mesh.normals.size(); ++i)
         if (!is_finite(mesh.normals[i])) fail(where, fmt::format("normal {} is not finite", i));
     const int level = mesh.subdivision.level;
-    if (level < 0 || level > kMaxSubdivisionLevel)
-        fail(where, fmt::format("subdivision level {} is not in [0, {}]", level, kMaxSubdivisionLevel));
+    if (level != kAutoSubdivisionLevel && (level < 0 || level > kMaxSubdivisionLevel))
+        fail(where, fmt::format("subdivision level {} is neither automatic nor in [0, {}]", level,
+                                kMaxSubdivisionLevel));
     for (size_t i = 0; i < mesh.creases.size(); ++i) {
         const Crease& crease = mesh.creases[i];
         if (crease.first >= mesh.positions.size() || crease.second >= mesh.positions.size())

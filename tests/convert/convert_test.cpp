@@ -60,7 +60,7 @@ Displacement draw_meaning(std::mt19937& random) {
 
 std::vector<Vec3f> evaluate(const Mesh& mesh, const Displacement& map) {
     constexpr uint8_t kLevel = 4;
-    const Surface surface = make_surface(mesh, &map, Affine{});
+    const Surface surface = make_surface(mesh, &map, {});
     std::vector<Vec3f> points;
     for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
         for (uint32_t j = 0; j <= 1u << kLevel; ++j)
@@ -240,7 +240,7 @@ TEST(DisplacedMesh, has_the_vertices_of_the_surface_and_shares_them_across_edges
         open += count == 1;
     }
     EXPECT_EQ(open, 2u * (64 + 32));
-    const Surface surface = make_surface(tube, &map, Affine{});
+    const Surface surface = make_surface(tube, &map, {});
     std::set<std::array<float, 3>> points;
     for (const Vec3f& p : mesh.positions) points.insert({p.x, p.y, p.z});
     for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)

@@ -39,7 +39,7 @@ template <class Value> Value quantise_sculpt(float value) {
 }
 
 std::vector<Vec3f> evaluate(const Displacement& map) {
-    const Surface surface = make_surface(test::make_sculpt_plane(), &map, Affine{});
+    const Surface surface = make_surface(test::make_sculpt_plane(), &map, {});
     std::vector<Vec3f> points;
     for (uint32_t j = 0; j <= 1u << kLevel; ++j)
         for (uint32_t i = 0; i <= 1u << kLevel; ++i)

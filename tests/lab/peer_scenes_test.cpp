@@ -44,7 +44,7 @@ TEST(PeerScenes, are_closed_bodies_that_face_outwards) {
 TEST(PeerScenes, have_charts_that_agree_where_they_meet) {
     const Scene scene = make_peer_scene("rock", 1, PeerWorld::constant);
     const Mesh& mesh = scene.meshes[0];
-    const Surface surface = make_surface(mesh, &scene.displacements[0], Affine{});
+    const Surface surface = make_surface(mesh, &scene.displacements[0], {});
     std::map<uint32_t, Vec3f> moved;
     float longest = 0;
     for (size_t corner = 0; corner < mesh.position_indices.size(); ++corner) {

@@ -43,7 +43,7 @@ const samples::Model& ear() {
 /// Share of cells, one a texel along either axis of a patch, whose displaced normal looks away from the base
 /// normal.
 double measure_folding(const Mesh& mesh, const Displacement& displacement) {
-    const Surface surface = make_surface(mesh, &displacement, Affine{});
+    const Surface surface = make_surface(mesh, &displacement, {});
     const float size = float(displacement.tiles[0].texture->width);
     samples::Random random(17);
     int folded = 0;

@@ -46,7 +46,7 @@ void expect_same_shape(const Surface& a, const Surface& b) {
 void expect_followed(const Mesh& mesh) {
     const Displacement map = test::make_displacement(test::make_noise(8, 8, 0.1f, 4));
     for (const Displacement* displacement : {static_cast<const Displacement*>(nullptr), &map}) {
-        const Surface surface = make_surface(repeat_uvs(mesh), displacement, {}, nullptr, kWanted);
+        const Surface surface = make_surface(repeat_uvs(mesh), displacement, {{}, nullptr, kWanted, {}});
         expect_equal_uvs(surface);
         const Surface plain = make_surface(mesh, displacement, {});
         expect_same_shape(surface, plain);
@@ -76,7 +76,7 @@ TEST(FurtherUvs, follow_islands_of_their_own_through_subdivision) {
     mesh.uvs.clear();
     for (const Vec3f& p : mesh.positions) mesh.uvs.push_back({p.x, p.y});
     mesh.further_uvs = {{kSet, torn.uvs, torn.uv_indices}};
-    const Surface whole = make_surface(mesh, nullptr, {}, nullptr, kWanted);
+    const Surface whole = make_surface(mesh, nullptr, {{}, nullptr, kWanted, {}});
     const Surface expected = make_surface(torn, nullptr, {});
     for (uint32_t patch = 0; patch < whole.patch_count(); ++patch)
         for (size_t k = 0; k < 4; ++k)
@@ -97,7 +97,7 @@ TEST(FurtherUvs, follow_polygons_into_patches) {
 TEST(FurtherUvs, are_zero_on_faces_that_have_none) {
     Mesh mesh = repeat_uvs(test::make_random_grid(2, 1, 0, 3));
     for (size_t corner = 4; corner < 8; ++corner) mesh.further_uvs[1].indices[corner] = kNoIndex;
-    const Surface surface = make_surface(mesh, nullptr, {}, nullptr, kWanted);
+    const Surface surface = make_surface(mesh, nullptr, {{}, nullptr, kWanted, {}});
     const PatchUvs& found = surface.further_uvs.at(0);
     EXPECT_EQ(found.corners.at(1), (std::array<Vec2f, 4>{}));
     EXPECT_NE(found.corners.at(0), (std::array<Vec2f, 4>{}));
@@ -109,7 +109,7 @@ TEST(FurtherUvs, of_a_mesh_without_its_own_are_subdivided_too) {
     const Surface expected = make_surface(mesh, nullptr, {});
     mesh.further_uvs = {{kSet, mesh.uvs, mesh.uv_indices}};
     mesh.uvs.clear(), mesh.uv_indices.clear();
-    const Surface surface = make_surface(mesh, nullptr, {}, nullptr, kWanted);
+    const Surface surface = make_surface(mesh, nullptr, {{}, nullptr, kWanted, {}});
     EXPECT_TRUE(surface.uvs.empty());
     for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
         for (size_t k = 0; k < 4; ++k)

@@ -104,7 +104,8 @@ TEST(MakeSurface, world_space_maps_go_through_the_inverse_of_the_object) {
     const Affine world_from_object = compose(make_rotation_degrees({0, 90, 0}), make_scale({2, 2, 2}));
     Displacement displacement = test::make_displacement(test::make_constant(2, 2, {0, 1, 4}));
     displacement.space = DisplacementSpace::world;
-    const Surface surface = make_surface(test::make_plane(), &displacement, *invert(world_from_object));
+    const Surface surface =
+        make_surface(test::make_plane(), &displacement, {*invert(world_from_object), nullptr, {}, {}});
     const Vec3f base{0.5f, 0.5f, 0};
     const Vec3f moved = evaluate_vertex(surface, 0, {1, {1, 1, 1, 1}}, 1, 1);
     const Vec3f difference =
@@ -239,8 +240,8 @@ TEST(MakeSurface, collapsed_edges_count_as_triangles) {
 TEST(PyramidCache, shares_one_pyramid_a_texture) {
     PyramidCache pyramids;
     const Displacement displacement = make_flat_map();
-    const Surface a = make_surface(test::make_plane(), &displacement, {}, &pyramids);
-    const Surface b = make_surface(test::make_plane(), &displacement, {}, &pyramids);
+    const Surface a = make_surface(test::make_plane(), &displacement, {{}, &pyramids, {}, {}});
+    const Surface b = make_surface(test::make_plane(), &displacement, {{}, &pyramids, {}, {}});
     EXPECT_EQ(a.map.tiles[0].pyramid, b.map.tiles[0].pyramid);
 }
 

@@ -133,15 +133,38 @@ TEST(MipChain, a_map_without_background_is_averaged_as_it_is) {
     EXPECT_TRUE(find_gutter(displacement, displacement.tiles[0], meshes).copies.empty());
 }
 
-TEST(MipChain, islands_are_those_of_the_subdivided_uvs) {
-    // One sheet of nine quads with bulging borders, which smooth uvs pull in.
+/// One sheet of nine quads with bulging borders, which smooth uvs pull in.
+Mesh make_bulging_sheet(int level) {
     Mesh mesh = test::make_random_grid(3, 3, 0, 2);
     for (Vec2f& uv : mesh.uvs) {
         const float x = 2 * uv.x - 1, y = 2 * uv.y - 1;
         const float bulge = (std::fabs(x) > 0.9f) != (std::fabs(y) > 0.9f) ? 0.375f : 0.25f;
         uv = {0.5f + bulge * x, 0.5f + bulge * y};
     }
-    mesh.subdivision.scheme = SubdivisionScheme::catmark;
+    mesh.subdivision.scheme = SubdivisionScheme::catmark, mesh.subdivision.level = level;
+    return mesh;
+}
+
+TEST(MipChain, islands_of_automatic_levels_are_those_of_fine_ones) {
+    const Displacement displacement = test::make_displacement(test::make_constant(256, 256, {0, 0, 0}));
+    std::vector<TexelMask> masks;
+    for (const int level : {kAutoSubdivisionLevel, 5, 0}) {
+        const Mesh mesh = make_bulging_sheet(level);
+        const Mesh* meshes[] = {&mesh};
+        masks.push_back(find_outside_texels(displacement, displacement.tiles[0], meshes).uncovered);
+    }
+    int differences = 0, of_straight_borders = 0;
+    for (int64_t y = 0; y < 256; ++y)
+        for (int64_t x = 0; x < 256; ++x) {
+            differences += masks[0].has(x, y) != masks[1].has(x, y);
+            of_straight_borders += masks[2].has(x, y) != masks[1].has(x, y);
+        }
+    EXPECT_LT(differences, 30);
+    EXPECT_GT(of_straight_borders, 100);
+}
+
+TEST(MipChain, islands_are_those_of_the_subdivided_uvs) {
+    Mesh mesh = make_bulging_sheet(3);
     Displacement displacement = test::make_displacement(test::make_constant(256, 256, {0, 0, 0}));
     displacement.space = DisplacementSpace::object;
     const Surface surface = make_surface(mesh, &displacement, {});

@@ -29,7 +29,7 @@ def load(path: str | os.PathLike, time: float | None = None, *, report: list | N
     camera: path of the camera prim; None: that of the render settings, else the first one.
     purposes: purposes of prims that are taken.
     meters: lengths become meters by the stage's metersPerUnit; else they stay as they are.
-    subdivision_level: of subdivided meshes, 0 to 8; None: 3, and 2 or 1 for meshes of many faces.
+    subdivision_level: of subdivided meshes, 0 to 8; None: automatic, by the picture.
     vector_space: what the vectors of MaterialX displacements are: "tangent" (dP/du, dP/dv and the normal) or "object".
     folder: where textures inside usdz packages, the points of large instancers and numbered files of meshes whose points
       change are written; None: a temporary folder that lasts as long as the scene, and such meshes stay as at one frame.

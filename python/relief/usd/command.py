@@ -22,7 +22,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--camera", help="path of the camera; that of the render settings, else the first, if not given")
     parser.add_argument("--purposes", default="default,render", help="purposes of prims that are taken: default,render")
     parser.add_argument("--meters", action="store_true", help="lengths in meters, by the stage's metersPerUnit")
-    parser.add_argument("--subdivision-level", type=int, help="of subdivided meshes, 0 to 8; by their size if not given")
+    parser.add_argument("--subdivision-level", type=int, help="of subdivided meshes, 0 to 8; by the picture if not given")
     parser.add_argument("--vector-space", choices=("tangent", "object"), default="tangent",
                         help="what the vectors of MaterialX displacements are")
     parser.add_argument("-q", "--quiet", action="store_true", help="no report of what is not taken over")

@@ -20,7 +20,7 @@ MAX_SHARPNESS = 10.0
 MAX_LEVEL = 8
 FARTHEST = 1e18  # of points from the origin
 MAX_FINE_FACES = 250_000
-LEVELS = ((4096, 3), (65536, 2))  # subdivision levels of meshes up to so many faces; 1 above
+FINE_LEVELS = ((4096, 3), (65536, 2))  # levels that meshes up to so many faces are refined to as polygons; 1 above
 
 
 @dataclasses.dataclass
@@ -79,13 +79,14 @@ def check_topology(context: Context, prim: Usd.Prim, positions, sizes, points) -
         context.fail(prim, f"faceVertexIndices are {points.min()} to {points.max()}, but there are {len(positions)} points")
 
 
-def choose_level(context: Context, prim: Usd.Prim, face_count: int) -> int:
+def choose_level(context: Context, prim: Usd.Prim) -> int | str:
+    """The level noted on the prim, that of the options, or auto."""
     noted = context.get_whole(prim, "relief:subdivision:level", 0, MAX_LEVEL)
     if noted is not None:
         return noted
     if context.options.subdivision_level is not None:
         return context.options.subdivision_level
-    return next((level for most, level in LEVELS if face_count <= most), 1)
+    return "auto"
 
 
 def read_subdivision(context: Context, mesh: UsdGeom.Mesh, raw: RawMesh) -> None:
@@ -101,7 +102,7 @@ def read_subdivision(context: Context, mesh: UsdGeom.Mesh, raw: RawMesh) -> None
     rule = context.get(mesh.GetFaceVaryingLinearInterpolationAttr(), "cornersPlus1")
     if rule not in ("all", "cornersPlus1", "cornersPlus2", "cornersOnly"):
         context.report.add(raw.prim, f"faceVaryingLinearInterpolation {rule} is taken as cornersPlus1")
-    raw.subdivision = {"scheme": SCHEMES[scheme], "level": choose_level(context, raw.prim, len(raw.faces.sizes)),
+    raw.subdivision = {"scheme": SCHEMES[scheme], "level": choose_level(context, raw.prim),
                        "uv": "linear" if rule == "all" else "smooth",
                        "boundary": BOUNDARIES.get(boundary, "edge-only")}
     raw.creases = read_creases(context, mesh, raw)
@@ -276,6 +277,8 @@ def refine_mesh(context: Context, raw: RawMesh, wanted_uvs: tuple) -> RawMesh:
                 rows[is_edge, :2].astype(np.int64), rows[is_edge, 2], point_sharpness,
                 raw.subdivision["scheme"] == "catmark", raw.subdivision["boundary"] == "edge-and-corner")
     level = raw.subdivision["level"]
+    if level == "auto":
+        level = next((fine for most, fine in FINE_LEVELS if len(raw.faces.sizes) <= most), 1)
     if context.options.subdivision_level is None:
         while level > 1 and len(raw.faces.sizes) * 4 ** level > MAX_FINE_FACES:
             level -= 1

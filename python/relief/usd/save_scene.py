@@ -148,7 +148,8 @@ def write_subdivision(mesh: UsdGeom.Mesh, keys: dict, arrays: relief.Mesh) -> No
     mesh.CreateSubdivisionSchemeAttr(scheme)
     if scheme == "none":
         return
-    set_attribute(mesh.GetPrim(), "relief:subdivision:level", int(keys.get("level", 3)))
+    if keys.get("level", "auto") != "auto":
+        set_attribute(mesh.GetPrim(), "relief:subdivision:level", int(keys["level"]))
     mesh.CreateInterpolateBoundaryAttr(BOUNDARIES[keys.get("boundary", "edge-and-corner")])
     mesh.CreateFaceVaryingLinearInterpolationAttr("all" if keys.get("uv", "smooth") == "linear" else "cornersPlus1")
     rows = find_creases(keys, arrays)

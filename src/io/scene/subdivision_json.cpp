@@ -12,6 +12,16 @@ namespace relief {
 
 namespace {
 
+constexpr const char* kAutoLevelWord = "auto";
+
+int read_level(const JsonNode& node) {
+    if (!node.is_string()) return int(node.as_integer(0, kMaxSubdivisionLevel));
+    if (node.as_string() != kAutoLevelWord)
+        node.fail(fmt::format("must be \"auto\" or a number, not \"{}\"", node.as_string()),
+                  fmt::format("write \"auto\", or a level from 0 to {}", kMaxSubdivisionLevel));
+    return kAutoSubdivisionLevel;
+}
+
 void add_crease(const JsonNode& node, Mesh& mesh) {
     const std::vector<JsonNode> values = node.elements();
     if (values.size() != 3)
@@ -47,8 +57,7 @@ void read_subdivision(const JsonNode& node, Mesh& mesh) {
     };
     Subdivision& subdivision = mesh.subdivision;
     read_word(node.get("scheme"), subdivision.scheme);
-    if (const auto level = node.find("level"))
-        subdivision.level = int(level->as_integer(0, kMaxSubdivisionLevel));
+    if (const auto level = node.find("level")) subdivision.level = read_level(*level);
     if (const auto uv = node.find("uv")) read_word(*uv, subdivision.uv);
     if (const auto boundary = node.find("boundary")) read_word(*boundary, subdivision.boundary);
     if (const auto creases = node.find("creases")) read_creases(*creases, mesh);
@@ -60,7 +69,10 @@ Json write_subdivision(const Mesh& mesh) {
     const Subdivision& subdivision = mesh.subdivision;
     Json node;
     node["scheme"] = get_word(subdivision.scheme);
-    node["level"] = subdivision.level;
+    if (subdivision.level == kAutoSubdivisionLevel)
+        node["level"] = kAutoLevelWord;
+    else
+        node["level"] = subdivision.level;
     node["uv"] = get_word(subdivision.uv);
     node["boundary"] = get_word(subdivision.boundary);
     if (subdivision.creases == CreaseRule::ignore) node["creases"] = false; // the mesh file has them

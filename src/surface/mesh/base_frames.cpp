@@ -14,9 +14,8 @@ namespace relief {
 namespace {
 
 /// Quads, smooth where the mesh says so.
-SmoothBase make_base(Polygons polygons, const Subdivision& subdivision) {
-    if (subdivision.scheme != SubdivisionScheme::none)
-        return subdivide(polygons, subdivision, BasePatches::bicubic);
+SmoothBase make_base(Polygons polygons, const Subdivision& subdivision, const BaseNeeds& base_needs) {
+    if (subdivision.scheme != SubdivisionScheme::none) return subdivide(polygons, subdivision, base_needs);
     SmoothBase base;
     bool is_all_quads = true;
     for (uint32_t face = 0; face < polygons.face_count(); ++face)
@@ -96,7 +95,8 @@ struct FrameNeeds {
 
 } // namespace
 
-FramedBase make_framed_base(Polygons polygons, const Mesh& mesh, const Displacement& displacement) {
+FramedBase make_framed_base(Polygons polygons, const Mesh& mesh, const Displacement& displacement,
+                            const BaseNeeds& base_needs) {
     const FrameNeeds needs(polygons, mesh, displacement);
     if (needs.has_file_normals) {
         check_file_frames(polygons, mesh, displacement);
@@ -114,7 +114,7 @@ FramedBase make_framed_base(Polygons polygons, const Mesh& mesh, const Displacem
     if (!needs.is_smooth && needs.summed == SummedNormals::faces)
         result.point_normals = compute_point_normals(polygons, needs.summed);
     if (is_mikk_first) add_tangents(polygons, result.point_normals);
-    result.base = make_base(std::move(polygons), mesh.subdivision);
+    result.base = make_base(std::move(polygons), mesh.subdivision, base_needs);
     Polygons& quads = result.base.polygons;
     if (!needs.has_file_normals) quads.normals.clear();
     if (result.point_normals.size() != quads.positions.size())

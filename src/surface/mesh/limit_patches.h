@@ -16,7 +16,11 @@ struct LimitPatches {
     std::vector<std::array<Vec3f, 4>> corner_normals; ///< one a quad: unit normals of its own corners
 };
 
-/// `refined` is that of `mesh`. Controls, which take most of the time, are left out where nobody wants them.
+/// First quad of each run of quads on one face, and the end of the last run.
+std::vector<uint32_t> find_face_runs(const RefinedMesh& refined);
+
+/// Makes the patches of `refined`, which is a refinement of `mesh`. Control points, which take most of the
+/// time, are optional.
 LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& refined,
                                 bool has_controls = true);
 

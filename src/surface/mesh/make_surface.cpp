@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "relief/error.h"
+#include "surface/map/displacement_change.h"
 #include "surface/map/displacement_map.h"
 #include "surface/mesh/base_frames.h"
 #include "surface/mesh/polygons.h"
@@ -99,23 +100,6 @@ PatchUvs make_patch_uvs(const Polygons& polygons, int number, const std::vector<
 void copy_further_uvs(Surface& surface, const Polygons& polygons) {
     for (const CornerUvs& set : polygons.further_uvs)
         surface.further_uvs.push_back(make_patch_uvs(polygons, set.number, set.uvs));
-}
-
-/// Tile of a patch by the middle of its uvs, and what to take off them.
-struct TileChoice {
-    uint8_t index = 0;
-    Vec2f offset{};
-};
-
-TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& uvs) {
-    const float u = std::floor((uvs[0].x + uvs[1].x + uvs[2].x + uvs[3].x) / 4);
-    const float v = std::floor((uvs[0].y + uvs[1].y + uvs[2].y + uvs[3].y) / 4);
-    TileChoice choice{Surface::kNoTile, {u, v}};
-    if (u < 0 || u > 9 || v < 0) return choice;
-    const double udim = 1001 + double(u) + 10 * double(v);
-    for (size_t k = 0; k < map.tiles.size(); ++k)
-        if (double(map.tiles[k].udim) == udim) choice.index = uint8_t(k);
-    return choice;
 }
 
 /// Fails where a texel coordinate would not fit the integers of the kernels.
@@ -278,18 +262,33 @@ void check_derivatives(Surface& surface, const std::string& name) {
     check_reach(name, surface.map);
 }
 
-Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const Affine& object_from_world,
-                       PyramidCache& pyramids, std::span<const int> uv_sets) {
+/// Cells per side that a patch of a whole face needs to be as smooth as those of level 3.
+constexpr int kCellsOfFace = 256;
+
+BaseTolerance choose_tolerance(const SurfaceContext& context, const Polygons& polygons) {
+    if (context.tolerance) return *context.tolerance;
+    Box box;
+    for (const Vec3f& p : polygons.positions) box.extend(p);
+    return {find_tolerance_exponent(double(length(box.extent())) / 8192), {}};
+}
+
+Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const SurfaceContext& context,
+                       PyramidCache& pyramids) {
+    const std::span<const int> uv_sets = context.uv_sets;
     Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
     if (polygons.uvs.empty())
         throw Error(ErrorKind::bad_input,
                     {fmt::format("mesh has no uvs, but displacement '{}' needs them", displacement.name),
                      polygons.where, "unwrap the mesh"});
-    FramedBase framed = make_framed_base(std::move(polygons), mesh, displacement);
     Surface surface;
     surface.name = mesh.name;
     surface.has_displacement = true;
-    surface.map = make_displacement_map(displacement, object_from_world, pyramids);
+    surface.map = make_displacement_map(displacement, context.object_from_world, pyramids);
+    const DisplacementChange change(surface.map, displacement.is_udim);
+    const BaseNeeds needs{BasePatches::bicubic, choose_tolerance(context, polygons), &change,
+                          displacement.type == DisplacementType::vector &&
+                              displacement.lengths == FrameLengths::relative};
+    FramedBase framed = make_framed_base(std::move(polygons), mesh, displacement, needs);
     const std::vector<uint8_t> lacks_uvs = mark_faces_without_uvs(mesh, framed.base.polygons);
     VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim, lacks_uvs);
     find_overrides(surface, lacks_uvs);
@@ -298,6 +297,8 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
         surface.further_uvs.push_back(
             make_patch_uvs(framed.base.polygons, kOwnUvSet, framed.base.polygons.uvs));
     surface.controls = std::move(framed.base.controls);
+    surface.base_reserve = framed.base.reserve;
+    if (mesh.subdivision.level == kAutoSubdivisionLevel) surface.most_base_cells = kCellsOfFace;
     sources.point_normals = std::move(framed.point_normals);
     // A height moves along the normal alone.
     if (displacement.type == DisplacementType::vector) sources.lengths = displacement.lengths;
@@ -306,16 +307,20 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     return surface;
 }
 
-Polygons make_plain_polygons(const Mesh& mesh, std::span<const int> uv_sets) {
+Polygons make_plain_polygons(const Mesh& mesh, const SurfaceContext& context, BaseReserve& reserve) {
+    const std::span<const int> uv_sets = context.uv_sets;
     if (mesh.subdivision.scheme == SubdivisionScheme::none)
         return cut_to_triangles(make_polygons(mesh, Welding::none, uv_sets));
     const Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
-    return cut_to_triangles(subdivide(polygons, mesh.subdivision, BasePatches::bilinear).polygons);
+    const BaseNeeds needs{BasePatches::bilinear, choose_tolerance(context, polygons), nullptr, false};
+    const SmoothBase base = subdivide(polygons, mesh.subdivision, needs);
+    reserve = base.reserve;
+    return cut_to_triangles(base.polygons);
 }
 
-Surface make_plain(const Mesh& mesh, std::span<const int> uv_sets) {
-    const Polygons polygons = make_plain_polygons(mesh, uv_sets);
+Surface make_plain(const Mesh& mesh, const SurfaceContext& context) {
     Surface surface;
+    const Polygons polygons = make_plain_polygons(mesh, context, surface.base_reserve);
     surface.name = mesh.name;
     VertexSplitter vertices(polygons.positions.size());
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
@@ -342,12 +347,10 @@ Surface make_plain(const Mesh& mesh, std::span<const int> uv_sets) {
 
 } // namespace
 
-Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
-                     PyramidCache* pyramids, std::span<const int> uv_sets) {
-    if (!displacement) return make_plain(mesh, uv_sets);
+Surface make_surface(const Mesh& mesh, const Displacement* displacement, const SurfaceContext& context) {
+    if (!displacement) return make_plain(mesh, context);
     PyramidCache own_pyramids;
-    return make_displaced(mesh, *displacement, object_from_world, pyramids ? *pyramids : own_pyramids,
-                          uv_sets);
+    return make_displaced(mesh, *displacement, context, context.pyramids ? *context.pyramids : own_pyramids);
 }
 
 } // namespace relief

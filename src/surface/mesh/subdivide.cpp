@@ -5,36 +5,15 @@
 
 #include <fmt/format.h>
 
-#include "base/machine.h"
-#include "relief/error.h"
+#include "surface/mesh/adaptive_cage.h"
 #include "surface/mesh/irregular_points.h"
 #include "surface/mesh/limit_patches.h"
+#include "surface/mesh/patch_budget.h"
 #include "surface/mesh/subdivision_mesh.h"
 
 namespace relief {
 
 namespace {
-
-constexpr uint64_t kMostPatches = uint64_t(1) << 27;
-/// At the peak: refined topology, polygons, patches and their split vertices.
-constexpr uint64_t kBytesPerPatch = 900;
-
-void check_size(const SubdivisionMesh& mesh, const std::string& where) {
-    const uint64_t count = mesh.quad_count(), available = available_memory_bytes();
-    const auto refuse = [&](std::string message) {
-        throw Error(ErrorKind::out_of_memory,
-                    {std::move(message), where, "lower the level of its subdivision"});
-    };
-    if (count > kMostPatches)
-        refuse(fmt::format("subdivision to level {} makes {} patches, at most {} are possible", mesh.level(),
-                           count, kMostPatches));
-    if (count * kBytesPerPatch > available)
-        refuse(fmt::format(
-            "subdivision to level {} makes {} patches and needs {} bytes ({:.1f} GiB), {:.1f} GiB are "
-            "available",
-            mesh.level(), count, count * kBytesPerPatch, double(count * kBytesPerPatch) / (1 << 30),
-            double(available) / (1 << 30)));
-}
 
 /// Corners (4 quad + k) around each point, point by point.
 struct PointCorners {
@@ -137,19 +116,33 @@ Polygons make_quads(const RefinedMesh& refined, const Polygons& source) {
 
 } // namespace
 
-SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, BasePatches kind) {
-    SubdivisionMesh mesh(polygons, subdivision);
-    check_size(mesh, polygons.where);
+namespace {
+
+RefinedMesh refine_to_level(SubdivisionMesh& mesh, const Polygons& polygons, const Subdivision& subdivision,
+                            const BaseNeeds& needs) {
+    check_patch_count(mesh.quad_count(), polygons.where,
+                      fmt::format("subdivision to level {}", mesh.level()));
     RefinedMesh refined = mesh.refine();
-    if (kind == BasePatches::bicubic && subdivision.scheme == SubdivisionScheme::catmark)
+    if (needs.patches == BasePatches::bicubic && subdivision.scheme == SubdivisionScheme::catmark)
         cut_at_irregular_points(refined, kIsolationDepth);
+    return refined;
+}
+
+} // namespace
+
+SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, const BaseNeeds& needs) {
+    SubdivisionMesh mesh(polygons, subdivision);
+    const bool is_automatic =
+        subdivision.level == kAutoSubdivisionLevel && subdivision.scheme == SubdivisionScheme::catmark;
     SmoothBase base;
+    const RefinedMesh refined = is_automatic ? refine_adaptively(mesh, polygons, needs, base.reserve)
+                                             : refine_to_level(mesh, polygons, subdivision, needs);
     base.polygons = make_quads(refined, polygons);
     if (subdivision.scheme == SubdivisionScheme::bilinear) {
         base.polygons.positions = mesh.compute_points();
         return base;
     }
-    LimitPatches patches = make_limit_patches(mesh, refined, kind == BasePatches::bicubic);
+    LimitPatches patches = make_limit_patches(mesh, refined, needs.patches == BasePatches::bicubic);
     join_normals(refined, patches, base);
     base.polygons.positions = std::move(patches.positions);
     base.controls = std::move(patches.controls);

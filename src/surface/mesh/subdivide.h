@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "surface/mesh/base_needs.h"
 #include "surface/mesh/polygons.h"
 #include "surface/patch/surface.h"
 
@@ -13,12 +14,13 @@ struct SmoothBase {
     Polygons polygons;
     std::vector<Vec3f> point_normals;    ///< one a point: the mean of the sides; empty without a limit normal
     std::vector<InnerControls> controls; ///< one a face; empty: bilinear patches
+    BaseReserve reserve;                 ///< of automatic levels
 };
 
-enum class BasePatches { bilinear, bicubic };
-
-/// Subdivides by `subdivision`, whose scheme is not `none`. Bilinear: neither normals nor controls. Throws
-/// bad_input for meshes that cannot be subdivided, out_of_memory where the patches would not fit.
-SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, BasePatches patches);
+/// Subdivides by `subdivision`, whose scheme is not `none`: to its level, or as finely as `needs` asks for
+/// where the level is automatic (the scheme `bilinear` needs no level). The scheme `bilinear` makes neither
+/// normals nor controls. Throws bad_input for meshes that cannot be subdivided, out_of_memory where the
+/// patches would not fit.
+SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, const BaseNeeds& needs);
 
 } // namespace relief

@@ -3,34 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <optional>
-#include <shared_mutex>
 #include <string>
 
 #include <fmt/format.h>
-#include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/far/error.h>
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include "relief/error.h"
-#include "surface/mesh/uv_topology.h"
+#include "surface/mesh/subdivision_topology.h"
 
 namespace relief {
 
 namespace {
 
-namespace osd = OpenSubdiv;
-
-using Cache = osd::Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shared_lock<std::shared_mutex>,
-                                                    std::unique_lock<std::shared_mutex>>;
-using Factory = osd::Bfr::RefinerSurfaceFactory<Cache>;
-using RefinerPointer = std::unique_ptr<osd::Far::TopologyRefiner>;
-
 /// Steps beyond the patches, and beyond the creases, that the surface beside irregular points is isolated by.
 constexpr int kStepsBeyond = 7;
 constexpr int kMostSteps = 10;
+/// The same where faces are cut no finer than a tolerance asks for.
+constexpr int kStepsOfAutomatic = 5;
 
 /// What OpenSubdiv complained of last, which it would print otherwise.
 thread_local std::string complaint;
@@ -134,49 +126,6 @@ RefinerPointer make_refiner(const Polygons& polygons, const Subdivision& subdivi
     return refiner;
 }
 
-/// What primvars of OpenSubdiv must be able to do.
-template <class Value> struct Blended {
-    Value value{};
-    void Clear(void* = nullptr) { value = Value{}; }
-    void AddWithWeight(const Blended& other, double weight) { value = value + other.value * weight; }
-};
-using BlendedUv = Blended<Vec2<double>>;
-using BlendedPoint = Blended<Vec3d>;
-
-Vec3d read(const double* p) { return {p[0], p[1], p[2]}; }
-bool is_semi_sharp(float sharpness) { return sharpness > 0 && sharpness < kInfiniteSharpness; }
-
-/// True where the quads around a point are bicubic on each side of what stays sharp.
-bool is_regular_point(const osd::Far::TopologyLevel& level, int point) {
-    if (level.IsVertexNonManifold(point)) return false;
-    const float sharpness = level.GetVertexSharpness(point);
-    if (is_semi_sharp(sharpness)) return false;
-    const osd::Far::ConstIndexArray edges = level.GetVertexEdges(point);
-    std::vector<int> sharp;
-    for (int k = 0; k < edges.size(); ++k) {
-        const float edge_sharpness = level.GetEdgeSharpness(edges[k]);
-        if (is_semi_sharp(edge_sharpness)) return false;
-        if (edge_sharpness > 0) sharp.push_back(k);
-    }
-    if (level.IsVertexBoundary(point))
-        return sharp.size() == 2 && (sharpness > 0 ? edges.size() == 2 : edges.size() == 3);
-    return edges.size() == 4 && sharpness == 0 &&
-           (sharp.empty() || (sharp.size() == 2 && sharp[1] - sharp[0] == 2));
-}
-
-/// True where one semi-sharp crease, which does not change, is all that keeps a point from being regular.
-bool is_straight_point(const osd::Far::TopologyLevel& level, int point) {
-    if (level.IsVertexNonManifold(point) || level.IsVertexBoundary(point)) return false;
-    const osd::Far::ConstIndexArray edges = level.GetVertexEdges(point);
-    if (level.GetVertexSharpness(point) > 0 || edges.size() != 4) return false;
-    for (int k = 0; k < 2; ++k) {
-        const float along = level.GetEdgeSharpness(edges[k]);
-        if (is_semi_sharp(along) && along == level.GetEdgeSharpness(edges[k + 2]))
-            return level.GetEdgeSharpness(edges[1 - k]) == 0 && level.GetEdgeSharpness(edges[3 - k]) == 0;
-    }
-    return false;
-}
-
 bool is_smooth_point(const osd::Far::TopologyLevel& level, int point) {
     if (level.IsVertexNonManifold(point) || level.IsVertexBoundary(point)) return false;
     if (level.GetVertexSharpness(point) > 0) return false;
@@ -185,57 +134,7 @@ bool is_smooth_point(const osd::Far::TopologyLevel& level, int point) {
     return true;
 }
 
-/// Cell (i, j) of a face or part, and its axes.
-struct CellOrigin {
-    uint32_t face = 0, part = 0, i = 0, j = 0;
-};
-
-/// Corner k of a quad stands at (u, v) = kCorner[k].
-constexpr std::array<std::array<uint32_t, 2>, 4> kCorner = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-
 } // namespace
-
-struct LimitFace::Surface {
-    osd::Bfr::Surface<double> surface;
-    std::vector<double> points;
-    osd::Bfr::Parameterization parameters;
-};
-
-LimitFace::LimitFace(std::unique_ptr<Surface> surface) : surface_(std::move(surface)) {}
-LimitFace::~LimitFace() = default;
-
-LimitSample LimitFace::evaluate(uint32_t part, double u, double v) const {
-    double place[2] = {u, v}, scale = 1;
-    if (surface_->parameters.HasSubFaces()) {
-        const double in_part[2] = {u, v};
-        surface_->parameters.ConvertNormalizedSubFaceToCoord(int(part), in_part, place);
-        scale = 0.5;
-    }
-    double p[3], du[3], dv[3], duu[3], duv[3], dvv[3];
-    surface_->surface.Evaluate(place, surface_->points.data(), 3, p, du, dv, duu, duv, dvv);
-    return {read(p), read(du) * scale, read(dv) * scale, read(duv) * (scale * scale)};
-}
-
-struct SubdivisionMesh::Implementation {
-    std::string where;
-    int level = 0;
-    std::vector<UvTopology> uv_sets; ///< a channel each: first that of the mesh, if it has one
-    bool has_uvs = false;            ///< it has one
-    std::vector<double> positions;
-    RefinerPointer refiner;
-    std::optional<Factory> factory;
-
-    void check_edges(const Polygons& polygons) const;
-    void check_points(const Polygons& polygons) const;
-    void check_creases(const Polygons& polygons) const;
-    int get_depth(uint32_t face) const;
-    std::vector<CellOrigin> find_origins() const;
-    std::vector<QuadPlace> find_places() const;
-    std::vector<std::array<Vec2f, 4>> refine_uvs(int channel) const;
-    std::vector<BlendedPoint> refine_points() const;
-    std::vector<Vec3d> find_limit_normals(const std::vector<bool>& is_regular) const;
-    void copy_quads(RefinedMesh& refined) const;
-};
 
 void SubdivisionMesh::Implementation::check_edges(const Polygons& polygons) const {
     const osd::Far::TopologyLevel base = refiner->GetLevel(0);
@@ -308,10 +207,18 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
     Factory::Options options;
     // What is irregular where creases meet stays so when they have worn off.
     const int start = std::max(self.level, int(std::ceil(creases.largest_semi_sharp)));
-    const int steps = std::min(start + kStepsBeyond, kMostSteps);
+    const bool is_automatic = subdivision.level == kAutoSubdivisionLevel;
+    const int steps = std::min(start + (is_automatic ? kStepsOfAutomatic : kStepsBeyond), kMostSteps);
     options.SetApproxLevelSmooth(steps);
     options.SetApproxLevelSharp(steps);
     self.factory.emplace(*self.refiner, options);
+    self.has_smooth_uvs =
+        subdivision.uv == UvRule::smooth && subdivision.scheme == SubdivisionScheme::catmark;
+    for (const UvTopology& set : self.uv_sets) {
+        std::vector<double>& points = self.uv_points.emplace_back();
+        for (const Vec2f& uv : set.values) points.insert(points.end(), {uv.x, uv.y, 0});
+    }
+    if (subdivision.scheme == SubdivisionScheme::catmark) self.find_bicubic_faces();
 }
 
 SubdivisionMesh::~SubdivisionMesh() = default;
@@ -382,26 +289,31 @@ std::vector<Blended<Value>> refine_values(std::vector<Blended<Value>> values, in
     return values;
 }
 
-/// Uvs of the corners of the quads at `level`.
-std::vector<std::array<Vec2f, 4>> SubdivisionMesh::Implementation::refine_uvs(int channel) const {
+/// Limits of the uv values of the refined mesh.
+std::vector<Vec2f> SubdivisionMesh::Implementation::find_limit_uv_values(int channel) const {
     const osd::Far::PrimvarRefinerReal<double> primvars(*refiner);
     std::vector<BlendedUv> base;
     for (const Vec2f& uv : uv_sets[size_t(channel)].values) base.push_back({{uv.x, uv.y}});
     const std::vector<BlendedUv> refined = refine_values(
-        std::move(base), level, [&](int k) { return refiner->GetLevel(k).GetNumFVarValues(channel); },
+        std::move(base), refiner->GetMaxLevel(),
+        [&](int k) { return refiner->GetLevel(k).GetNumFVarValues(channel); },
         [&](int k, const auto& from, auto& to) { primvars.InterpolateFaceVarying(k, from, to, channel); });
     std::vector<BlendedUv> limit(refined.size());
     primvars.LimitFaceVarying(refined, limit, channel);
-    const osd::Far::TopologyLevel last = refiner->GetLevel(level);
-    std::vector<std::array<Vec2f, 4>> result(size_t(last.GetNumFaces()));
-    for (size_t quad = 0; quad < result.size(); ++quad) {
-        const osd::Far::ConstIndexArray values = last.GetFaceFVarValues(int(quad), channel);
-        for (size_t k = 0; k < 4; ++k) {
-            const Vec2<double>& uv = limit[size_t(values[int(k)])].value;
-            result[quad][k] = {float(uv.x), float(uv.y)};
-        }
-    }
-    return result;
+    std::vector<Vec2f> values;
+    values.reserve(limit.size());
+    for (const BlendedUv& uv : limit) values.push_back({float(uv.value.x), float(uv.value.y)});
+    return values;
+}
+
+std::vector<Vec2f> SubdivisionMesh::Implementation::find_limit_uvs(int channel) const {
+    const std::vector<Vec2f> values =
+        refiner->GetMaxLevel() == 0 ? find_base_uv_values(channel) : find_limit_uv_values(channel);
+    const osd::Far::TopologyLevel last = refiner->GetLevel(refiner->GetMaxLevel());
+    std::vector<Vec2f> uvs;
+    for (int face = 0; face < last.GetNumFaces(); ++face)
+        for (const int value : last.GetFaceFVarValues(face, channel)) uvs.push_back(values[size_t(value)]);
+    return uvs;
 }
 
 void SubdivisionMesh::Implementation::copy_quads(RefinedMesh& refined) const {
@@ -419,7 +331,10 @@ void SubdivisionMesh::Implementation::copy_quads(RefinedMesh& refined) const {
         }
     }
     for (size_t k = 0; k < uv_sets.size(); ++k) {
-        std::vector<std::array<Vec2f, 4>> uvs = refine_uvs(int(k));
+        const std::vector<Vec2f> corners = find_limit_uvs(int(k));
+        std::vector<std::array<Vec2f, 4>> uvs(quad_count);
+        for (size_t corner = 0; corner < corners.size(); ++corner)
+            uvs[corner / 4][corner & 3] = corners[corner];
         if (k == 0 && has_uvs)
             refined.uvs = std::move(uvs);
         else
@@ -432,14 +347,14 @@ std::vector<BlendedPoint> SubdivisionMesh::Implementation::refine_points() const
     std::vector<BlendedPoint> base;
     for (size_t k = 0; k < positions.size(); k += 3) base.push_back({read(&positions[k])});
     return refine_values(
-        std::move(base), level, [&](int k) { return refiner->GetLevel(k).GetNumVertices(); },
+        std::move(base), refiner->GetMaxLevel(), [&](int k) { return refiner->GetLevel(k).GetNumVertices(); },
         [&](int k, const auto& from, auto& to) { primvars.Interpolate(k, from, to); });
 }
 
 /// The surface of a face is isolated to some depth only, which its normals at irregular points show.
 std::vector<Vec3d>
 SubdivisionMesh::Implementation::find_limit_normals(const std::vector<bool>& is_regular) const {
-    const osd::Far::TopologyLevel last = refiner->GetLevel(level);
+    const osd::Far::TopologyLevel last = refiner->GetLevel(refiner->GetMaxLevel());
     const std::vector<BlendedPoint> points = refine_points();
     std::vector<BlendedPoint> limit(points.size()), first(points.size()), second(points.size());
     osd::Far::PrimvarRefinerReal<double>(*refiner).Limit(points, limit, first, second);
@@ -481,19 +396,6 @@ std::vector<Vec3f> SubdivisionMesh::compute_points() const {
     for (const BlendedPoint& point : implementation_->refine_points())
         result.push_back(to_float(point.value));
     return result;
-}
-
-LimitFace SubdivisionMesh::make_face(uint32_t face) const {
-    const Implementation& self = *implementation_;
-    auto limit = std::make_unique<LimitFace::Surface>();
-    if (!self.factory->InitVertexSurface(int(face), &limit->surface))
-        throw Error(ErrorKind::bad_input,
-                    {"a face has no limit surface", fmt::format("{}, face {}", self.where, face),
-                     "repair the mesh, or set the subdivision scheme to none"});
-    limit->points.resize(3 * size_t(limit->surface.GetNumPatchPoints()));
-    limit->surface.PreparePatchPoints(self.positions.data(), 3, limit->points.data(), 3);
-    limit->parameters = limit->surface.GetParameterization();
-    return LimitFace(std::move(limit));
 }
 
 } // namespace relief

@@ -8,15 +8,11 @@
 #include <vector>
 
 #include "math/vec_double.h"
+#include "surface/mesh/cage.h"
+#include "surface/mesh/limit_face.h"
 #include "surface/mesh/polygons.h"
 
 namespace relief {
-
-/// Where a quad lies: corners on a face of the mesh, or on a polygon's part beside its corner `part`.
-struct QuadPlace {
-    uint32_t face = 0, part = 0;
-    std::array<Vec2<double>, 4> corners;
-};
 
 /// Quads of a mesh refined to its level.
 struct RefinedMesh {
@@ -31,32 +27,19 @@ struct RefinedMesh {
     std::vector<float> point_sharpness; ///< one a point: what is left of a sharp point that wears off
     std::vector<bool> is_bent;          ///< one an edge: no cubic, though between regular points
     std::vector<bool> is_regular;       ///< one a point: the limit is bicubic in the quads around it
+    bool is_adaptive = false;           ///< quads may cross the borders between polynomials of their face
     std::vector<bool> is_straight;      ///< one a point: regular but for a semi-sharp crease straight through
     std::vector<Vec3d> limit_normals;   ///< one a point: where it is irregular and smooth, else (0, 0, 0)
+
+    /// Control points of patches that are fitted already, in the order of InnerControls; and per quad the
+    /// number of its own, or kNoIndex. Empty: none is.
+    std::vector<std::array<Vec3d, 12>> fitted;
+    std::vector<uint32_t> fits;
 
     /// One a quad, of each further set of the polygons.
     std::vector<std::vector<std::array<Vec2f, 4>>> further_uvs;
 
     uint32_t quad_count() const { return uint32_t(points.size()); }
-};
-
-/// Limit position and derivatives in the parameters of a face or part.
-struct LimitSample {
-    Vec3d position, du, dv, duv;
-};
-
-/// The limit surface of one face; for one thread.
-class LimitFace {
-  public:
-    struct Surface;
-    explicit LimitFace(std::unique_ptr<Surface> surface);
-    ~LimitFace();
-
-    /// At (u, v) in [0, 1]^2 of the face, or of the part of a polygon beside corner `part`.
-    LimitSample evaluate(uint32_t part, double u, double v) const;
-
-  private:
-    std::unique_ptr<Surface> surface_;
 };
 
 /// Immutable; its faces may be made by any thread.
@@ -74,7 +57,14 @@ class SubdivisionMesh {
     RefinedMesh refine();
     /// Points after `level` steps, not on the limit; after refine().
     std::vector<Vec3f> compute_points() const;
+    /// The faces with limit uvs and what is known about their points. For a mesh that is not refined.
+    Cage make_cage() const;
+    /// Limit positions of a face. Throws bad_input for a face without a limit surface.
     LimitFace make_face(uint32_t face) const;
+    /// Limit uvs of a face in set `set` of Cage::uvs.
+    LimitFace make_uv_face(uint32_t face, uint32_t set) const;
+    /// Whether uvs are smooth within faces, and not bilinear.
+    bool has_smooth_uvs() const;
 
   private:
     struct Implementation;

@@ -5,6 +5,7 @@
 
 #include "math/vec_double.h"
 #include "surface/map/texels.h"
+#include "surface/mesh/limit_outlines.h"
 #include "surface/mesh/polygons.h"
 #include "surface/mesh/subdivision_mesh.h"
 
@@ -55,7 +56,13 @@ bool may_have_background(const Texture& texture) {
 void UvIslands::add(const Mesh& mesh) {
     std::vector<Edge> edges;
     Ids ids;
-    if (mesh.subdivision.scheme == SubdivisionScheme::catmark && mesh.subdivision.uv == UvRule::smooth) {
+    if (mesh.subdivision.scheme == SubdivisionScheme::catmark && mesh.subdivision.uv == UvRule::smooth &&
+        mesh.subdivision.level == kAutoSubdivisionLevel) {
+        const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+        visit_limit_outlines(SubdivisionMesh(polygons, mesh.subdivision),
+                             [&](std::span<const Vec2f> uvs) { add_face(uvs, ids, edges); });
+    } else if (mesh.subdivision.scheme == SubdivisionScheme::catmark &&
+               mesh.subdivision.uv == UvRule::smooth) {
         const Polygons polygons = make_polygons(mesh, Welding::equal_points);
         for (const std::array<Vec2f, 4>& uvs : SubdivisionMesh(polygons, mesh.subdivision).refine().uvs)
             add_face(uvs, ids, edges);

@@ -15,8 +15,7 @@ namespace relief {
 
 namespace {
 
-constexpr double kBicubicCells = 32; // a side, that bicubic patches may have on any map
-constexpr double kSmoothCells = 8;   // a texel, where the surface is curved between texels
+constexpr double kSmoothCells = 8; // a texel, where the surface is curved between texels
 
 /// What of a displaced line its level depends on, but for the view; `cells` as count_cells() finds them.
 template <size_t N>
@@ -50,7 +49,7 @@ int choose_level(const LineMeasure& line, const LevelFieldConfig& config) {
 /// the map is smooth, too.
 double count_cells(const Surface& surface, uint8_t tile, const Vec2f& a, const Vec2f& b) {
     const DisplacementMap& map = surface.map;
-    const double least = surface.controls.empty() ? 0 : kBicubicCells;
+    const double least = surface.controls.empty() ? 0 : surface.most_base_cells;
     if (tile >= map.tiles.size()) return least;
     const Texture& texture = *map.tiles[tile].texture;
     const double texels =

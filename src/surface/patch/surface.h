@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "math/box.h"
 #include "relief/scene.h"
 #include "surface/map/bounds_pyramid.h"
+#include "surface/mesh/base_tolerance.h"
 #include "surface/mesh/quad_list.h"
 #include "surface/patch/edge_overrides.h"
 
@@ -92,7 +94,9 @@ struct Surface {
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     QuadList quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
+    int most_base_cells = 32;   ///< per side, that a bicubic patch may have for the sake of its base alone
     std::vector<uint32_t> mips; ///< one a patch (formulas/mips.h), or empty: the map itself everywhere
+    BaseReserve base_reserve;   ///< for which other tolerances the patches would be the same
     EdgeOverrides overrides;    ///< edges whose samples come from the other side of a uv seam
     DisplacementMap map;        ///< no tiles: undisplaced
     bool has_displacement = false;
@@ -179,17 +183,25 @@ inline PatchLevels unpack_levels(uint32_t packed) {
 
 class PyramidCache;
 
+/// What surfaces are made with, apart from mesh and displacement.
+struct SurfaceContext {
+    Affine object_from_world;         ///< used by world-space displacement only
+    PyramidCache* pyramids = nullptr; ///< surfaces made with the same one share the bounds of their textures
+    /// Which of the mesh's further uvs textures are on, and kOwnUvSet where some are to be read on its own
+    /// uvs with the offsets of tiles.
+    std::span<const int> uv_sets;
+    /// How near automatic subdivision has to come to the limit surface; nullopt: 1/8192 of the diagonal of
+    /// the mesh, for callers without a view.
+    std::optional<BaseTolerance> tolerance;
+};
+
 /// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark
 /// refinement of the whole mesh where a face is not a quad), and points at exactly equal positions are one
 /// point; without, n-gons and concave quads are cut into triangles. Corners that repeat the position of the
-/// corner before are dropped, so a quad with a collapsed edge counts as a triangle. `object_from_world` is
-/// used by world-space displacement only. Surfaces made with the same `pyramids`
-/// (surface/map/displacement_map.h) share the bounds of their textures. `uv_sets`: which of the mesh's
-/// further uvs textures lie on, and kOwnUvSet where some are to be read on its own with the offsets of tiles.
-/// Throws bad_input with mesh and face: missing uv, index out of range, no face with an area, a value that is
-/// not finite or absurdly large.
-Surface make_surface(const Mesh& mesh, const Displacement* displacement, const Affine& object_from_world,
-                     PyramidCache* pyramids = nullptr, std::span<const int> uv_sets = {});
+/// corner before are dropped, so a quad with a collapsed edge counts as a triangle. Throws bad_input with
+/// mesh and face: missing uv, index out of range, no face with an area, a value that is not finite or
+/// absurdly large.
+Surface make_surface(const Mesh& mesh, const Displacement* displacement, const SurfaceContext& context);
 
 /// Sample (i, j) of a patch in [0, 2^level]^2, object space, by definition: edge samples lie on the edge's
 /// line, snapped to its level; corners are the dominant vertex's; the rest is the bilinear patch displaced.

@@ -1,0 +1,137 @@
+#include "surface/map/displacement_change.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "surface/map/displacement_map.h"
+#include "surface/map/texel_range.h"
+#include "surface/map/texels.h"
+
+namespace relief {
+
+namespace {
+
+constexpr uint32_t kStepBlock = 8; // texels per side
+constexpr int64_t kMostSteps =
+    1024; // texels of a footprint whose own steps are measured, not those of blocks
+
+/// Length of the displacement by the difference of two texels.
+double measure_step(const DisplacementMap& map, const std::array<float, 3>& a,
+                    const std::array<float, 3>& b) {
+    double sum = 0;
+    for (const Vec3f& row : map.matrix) {
+        const double d =
+            double(row.x) * (b[0] - a[0]) + double(row.y) * (b[1] - a[1]) + double(row.z) * (b[2] - a[2]);
+        sum += d * d;
+    }
+    return std::sqrt(sum);
+}
+
+/// Largest step between neighbours in a rectangle.
+float measure_steps(const DisplacementMap& map, const Texture& texture, const TexelRectangle& texels) {
+    double step = 0;
+    for (uint32_t y = texels.y0; y <= texels.y1; ++y)
+        for (uint32_t x = texels.x0; x <= texels.x1; ++x) {
+            const std::array<float, 3> here = read_texel(texture, x, y);
+            if (x < texels.x1) step = std::max(step, measure_step(map, here, read_texel(texture, x + 1, y)));
+            if (y < texels.y1) step = std::max(step, measure_step(map, here, read_texel(texture, x, y + 1)));
+        }
+    return float(step);
+}
+
+} // namespace
+
+TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& uvs) {
+    const float u = std::floor((uvs[0].x + uvs[1].x + uvs[2].x + uvs[3].x) / 4);
+    const float v = std::floor((uvs[0].y + uvs[1].y + uvs[2].y + uvs[3].y) / 4);
+    TileChoice choice{Surface::kNoTile, {u, v}};
+    if (u < 0 || u > 9 || v < 0) return choice;
+    const double udim = 1001 + double(u) + 10 * double(v);
+    for (size_t k = 0; k < map.tiles.size(); ++k)
+        if (double(map.tiles[k].udim) == udim) choice.index = uint8_t(k);
+    return choice;
+}
+
+DisplacementChange::DisplacementChange(const DisplacementMap& map, bool is_udim)
+    : map_(map), is_udim_(is_udim), longest_(find_longest_displacement(map)), blocks_(map.tiles.size()) {
+    for (size_t tile = 0; tile < map.tiles.size(); ++tile) {
+        const Texture& texture = *map.tiles[tile].texture;
+        Blocks& blocks = blocks_[tile];
+        blocks.width = (texture.width + kStepBlock - 1) / kStepBlock,
+        blocks.height = (texture.height + kStepBlock - 1) / kStepBlock;
+        blocks.steps = std::vector<std::atomic<float>>(size_t(blocks.width) * blocks.height);
+        for (std::atomic<float>& step : blocks.steps) step.store(-1, std::memory_order_relaxed);
+    }
+}
+
+/// Largest step between the texels of a block, the first ones of the next blocks included.
+float DisplacementChange::find_step(size_t tile, uint32_t x, uint32_t y) const {
+    std::atomic<float>& known = blocks_[tile].steps[size_t(y) * blocks_[tile].width + x];
+    float largest = known.load(std::memory_order_relaxed);
+    if (largest >= 0) return largest;
+    const Texture& texture = *map_.tiles[tile].texture;
+    // With the first texels of the next blocks.
+    const TexelRectangle block{x * kStepBlock, y * kStepBlock,
+                               std::min((x + 1) * kStepBlock, texture.width - 1),
+                               std::min((y + 1) * kStepBlock, texture.height - 1)};
+    largest = measure_steps(map_, texture, block);
+    known.store(largest, std::memory_order_relaxed);
+    return largest;
+}
+
+double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error) const {
+    const TileChoice tile = is_udim_ ? choose_tile(map_, uvs) : TileChoice{};
+    if (tile.index >= map_.tiles.size() || (error.x == 0 && error.y == 0)) return 0;
+    const Texture& texture = *map_.tiles[tile.index].texture;
+    double u0 = uvs[0].x, u1 = u0, v0 = uvs[0].y, v1 = v0;
+    for (const Vec2f& uv : uvs) {
+        u0 = std::min(u0, double(uv.x)), u1 = std::max(u1, double(uv.x));
+        v0 = std::min(v0, double(uv.y)), v1 = std::max(v1, double(uv.y));
+    }
+    u0 -= tile.offset.x, u1 -= tile.offset.x, v0 -= tile.offset.y, v1 -= tile.offset.y;
+    if (!map_.flip_v) std::tie(v0, v1) = std::pair(1 - v1, 1 - v0);
+    const double reach = map_.is_smooth ? 2 : 1; // texels that a filter reads on each side
+    const auto first = [&](double low, double off, double size) {
+        return int64_t(std::floor((low - off) * size - 0.5 - reach));
+    };
+    const auto last = [&](double high, double off, double size) {
+        return int64_t(std::ceil((high + off) * size - 0.5 + reach));
+    };
+    const WrappedRange columns = wrap_range(first(u0, error.x, texture.width),
+                                            last(u1, error.x, texture.width), texture.width, map_.wrap),
+                       rows = wrap_range(first(v0, error.y, texture.height),
+                                         last(v1, error.y, texture.height), texture.height, map_.wrap);
+    const double texels = error.x * texture.width + error.y * texture.height;
+    return std::min(2 * longest_, double(find_largest_step(tile.index, columns, rows)) * texels);
+}
+
+float DisplacementChange::find_largest_step(size_t tile, const WrappedRange& columns,
+                                            const WrappedRange& rows) const {
+    const auto count = [](const WrappedRange& range) {
+        int64_t sum = 0;
+        for (int k = 0; k < range.count; ++k)
+            sum += range.parts[size_t(k)][1] - range.parts[size_t(k)][0] + 1;
+        return sum;
+    };
+    const bool is_small = count(columns) * count(rows) <= kMostSteps;
+    float step = 0;
+    for (int j = 0; j < rows.count; ++j)
+        for (int i = 0; i < columns.count; ++i)
+            if (const auto [x0, x1] = columns.parts[size_t(i)]; is_small) {
+                const auto [y0, y1] = rows.parts[size_t(j)];
+                step =
+                    std::max(step, measure_steps(map_, *map_.tiles[tile].texture,
+                                                 {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)}));
+            } else {
+                const auto [y0, y1] = rows.parts[size_t(j)];
+                for (int64_t y = y0 / kStepBlock; y <= y1 / kStepBlock; ++y)
+                    for (int64_t x = x0 / kStepBlock; x <= x1 / kStepBlock; ++x)
+                        step = std::max(step, find_step(tile, uint32_t(x), uint32_t(y)));
+            }
+    return step;
+}
+
+} // namespace relief

@@ -1,0 +1,53 @@
+// How much a displacement changes where a uv is a little off, for choosing how finely uvs are interpolated.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "math/vec.h"
+#include "surface/map/wrapped_range.h"
+#include "surface/patch/surface.h"
+
+namespace relief {
+
+/// Image of a map that a patch reads, by the middle of its uvs, and the offset of that image's tile.
+struct TileChoice {
+    uint8_t index = 0;
+    Vec2f offset{};
+};
+
+/// Chooses the tile of a map with UDIM tiles; Surface::kNoTile where the map has none there.
+TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& uvs);
+
+/// Bounds on the displacement of quads by their uvs, in scene units (for tangent space: with frames of unit
+/// length). Finds steps between texels by blocks when they are first asked for. Thread safe; refers to the
+/// map.
+class DisplacementChange {
+  public:
+    DisplacementChange(const DisplacementMap& map, bool is_udim);
+
+    /// Largest change of the displacement anywhere within a quad, if the uvs there are off by at most `error`
+    /// (both coordinates not negative).
+    double find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error) const;
+
+    /// A length that no texel of the map displaces by more than.
+    double longest() const { return longest_; }
+    bool is_tangent() const { return map_.is_tangent; }
+
+  private:
+    struct Blocks {
+        uint32_t width = 0, height = 0;
+        std::vector<std::atomic<float>> steps; ///< largest step to a neighbour; negative: not known yet
+    };
+    float find_step(size_t tile, uint32_t x, uint32_t y) const;
+    float find_largest_step(size_t tile, const WrappedRange& columns, const WrappedRange& rows) const;
+
+    const DisplacementMap& map_;
+    bool is_udim_;
+    double longest_;
+    mutable std::vector<Blocks> blocks_; ///< one per tile
+};
+
+} // namespace relief

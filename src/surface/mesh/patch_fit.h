@@ -1,0 +1,76 @@
+// The bicubic patch of one quad on the limit surface of its face: exact where the surface is bicubic, fitted
+// elsewhere (docs/decisions/bicubic-base-patches.md).
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "surface/mesh/subdivision_mesh.h"
+#include "surface/mesh/uv_matching.h"
+
+namespace relief {
+
+/// One quad of the refined mesh; derivatives are by the quad's parameters.
+class PatchFit {
+  public:
+    /// Evaluates the corners. Refers to its arguments.
+    PatchFit(const LimitFace& face, const RefinedMesh& refined, uint32_t quad);
+
+    /// Finds the control points of the patch that comes nearest to the surface.
+    void fit();
+    /// Finds those of a patch whose uvs, bilinear between `uvs` at the corners, are the limit uvs as well.
+    void fit_to_uvs(const LimitFace& uv_face, const std::array<Vec2f, 4>& uvs);
+
+    const Vec3d& corner(size_t k) const { return corner_[k]; }
+    const Vec3d& normal(size_t k) const { return normal_[k]; }
+    /// In the order of InnerControls; once fitted.
+    const std::array<Vec3d, 12>& controls() const { return control_; }
+    /// Takes those of the same quad, fitted before.
+    void take(const std::array<Vec3d, 12>& controls) { control_ = controls; }
+    /// Largest distance of the samples from the fitted patch; 0 for an exact one.
+    double distance() const { return distance_; }
+    /// How far along u or v samples are on the patch from where they are on the face, in parts of the patch.
+    double lag() const { return lag_; }
+    /// After fit_to_uvs(): how far uvs are off at most, per coordinate.
+    const Vec2<double>& uv_error() const { return uv_error_; }
+
+  private:
+    Vec2<double> side(size_t k) const { return place_.corners[(k + 1) % 4] - place_.corners[k]; }
+    bool is_along_axis(size_t k) const { return side(k).x == 0 || side(k).y == 0; }
+    bool is_cubic(size_t k) const;
+    bool is_exact() const;
+    Vec2<double> find_place(double x, double y) const;
+    Vec3d evaluate(double x, double y) const;
+    Vec3d evaluate_edge(size_t k, double s) const;
+    Vec3d find_normal(size_t k, const LimitSample& sample) const;
+    Vec3d flatten(const Vec3d& control, size_t k) const;
+    void fit_edge(size_t k);
+    void fit_inside();
+
+    struct Sample {
+        Vec3d target;
+        double x, y; ///< of the target on the face
+        double u, v; ///< of the nearest point of the patch
+    };
+    double project(Sample& sample) const;
+    double measure_beside_sides() const;
+    double project_all(std::array<Sample, 25>& samples);
+    void fit_edge_to_uvs(size_t k, const UvMatching& uvs, bool may_leave_face);
+    void fit_inside_to_uvs(const UvMatching& uvs);
+    Vec3d blend(double x, double y) const;
+    void add_uv_error(const UvMatching::Match& match, const Vec3d& miss);
+    void solve_inside(std::span<const Sample> samples);
+
+    const LimitFace& face_;
+    const RefinedMesh& refined_;
+    uint32_t quad_;
+    const QuadPlace& place_;
+    std::array<bool, 4> is_regular_{};
+    bool is_in_bicubic_part_ = false;
+    std::array<Vec3d, 4> corner_{}, normal_{}, to_next_{}, to_previous_{}, twist_{};
+    std::array<Vec3d, 12> control_{};
+    double distance_ = 0, lag_ = 0, negligible_ = 0;
+    Vec2<double> uv_error_{};
+};
+
+} // namespace relief

@@ -1,0 +1,92 @@
+// How SubdivisionMesh holds its mesh for OpenSubdiv; for the sources that implement it only.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <opensubdiv/bfr/refinerSurfaceFactory.h>
+#include <opensubdiv/far/primvarRefiner.h>
+
+#include "surface/mesh/subdivision_mesh.h"
+#include "surface/mesh/uv_topology.h"
+
+namespace relief {
+
+namespace osd = OpenSubdiv;
+
+using Cache = osd::Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shared_lock<std::shared_mutex>,
+                                                    std::unique_lock<std::shared_mutex>>;
+using Factory = osd::Bfr::RefinerSurfaceFactory<Cache>;
+using RefinerPointer = std::unique_ptr<osd::Far::TopologyRefiner>;
+
+/// What primvars of OpenSubdiv must be able to do.
+template <class Value> struct Blended {
+    Value value{};
+    void Clear(void* = nullptr) { value = Value{}; }
+    void AddWithWeight(const Blended& other, double weight) { value = value + other.value * weight; }
+};
+using BlendedUv = Blended<Vec2<double>>;
+using BlendedPoint = Blended<Vec3d>;
+
+inline Vec3d read(const double* p) { return {p[0], p[1], p[2]}; }
+inline bool is_semi_sharp(float sharpness) { return sharpness > 0 && sharpness < kInfiniteSharpness; }
+
+/// Cell (i, j) of a face or part, and its axes.
+struct CellOrigin {
+    uint32_t face = 0, part = 0, i = 0, j = 0;
+};
+
+struct LimitFace::Surface {
+    osd::Bfr::Surface<double> surface;
+    std::vector<double> points;
+    osd::Bfr::Parameterization parameters;
+};
+
+/// Whether the quads around a point are bicubic on each side of what stays sharp, as far as the point's own
+/// sharpness and edges tell.
+bool is_regular_point(const osd::Far::TopologyLevel& level, int point);
+
+/// Whether one semi-sharp crease, which does not change, is all that keeps a point from being regular.
+bool is_straight_point(const osd::Far::TopologyLevel& level, int point);
+
+/// Corner k of a quad is at (u, v) = kCorner[k].
+inline constexpr std::array<std::array<uint32_t, 2>, 4> kCorner = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+
+struct SubdivisionMesh::Implementation {
+    std::string where;
+    int level = 0;
+    std::vector<UvTopology> uv_sets; ///< a channel each: first that of the mesh, if it has one
+    bool has_uvs = false;            ///< it has one
+    bool has_smooth_uvs = false;
+    std::vector<double> positions;
+    std::vector<std::vector<double>> uv_points; ///< per set: its values as (u, v, 0)
+    std::vector<bool> is_bicubic;               ///< per face: its limit is one polynomial
+    RefinerPointer refiner;
+    std::optional<Factory> factory;
+
+    void check_edges(const Polygons& polygons) const;
+    void check_points(const Polygons& polygons) const;
+    void check_creases(const Polygons& polygons) const;
+    void find_bicubic_faces();
+    std::pair<uint32_t, bool> find_irregular_corners(uint32_t face) const;
+    bool is_bicubic_in_set(uint32_t face, int channel) const;
+    template <class Read> SplineControls find_controls(uint32_t face, const Read& read_corner) const;
+    int get_depth(uint32_t face) const;
+    std::vector<CellOrigin> find_origins() const;
+    std::vector<QuadPlace> find_places() const;
+    std::vector<Vec2f> find_limit_uv_values(int channel) const;
+    std::vector<Vec2f> find_base_uv_values(int channel) const;
+    LimitFace make_uv_face(uint32_t face, int channel) const;
+    /// Per corner of the refined mesh.
+    std::vector<Vec2f> find_limit_uvs(int channel) const;
+    std::vector<BlendedPoint> refine_points() const;
+    std::vector<Vec3d> find_limit_normals(const std::vector<bool>& is_regular) const;
+    void copy_quads(RefinedMesh& refined) const;
+};
+
+} // namespace relief

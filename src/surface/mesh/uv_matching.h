@@ -1,0 +1,44 @@
+// Places of a face whose limit uvs are those that a patch interpolates between its corners.
+//
+// Uvs of a patch are bilinear, those of the limit surface are not. So that the map lies where it belongs, the
+// patch does not follow the parameters of the face: its point (x, y) is fitted to the point of the limit
+// surface which has the uv of (x, y).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "surface/mesh/limit_face.h"
+
+namespace relief {
+
+class UvMatching {
+  public:
+    /// Of a quad with `uvs` at its corners. Refers to its arguments.
+    UvMatching(const LimitFace& uv_face, const QuadPlace& place, const std::array<Vec2f, 4>& uvs);
+
+    /// The uv that the patch has at (x, y).
+    Vec2<double> interpolate(double x, double y) const;
+
+    struct Match {
+        Vec2<double> place;  ///< in the parameters of the quad
+        Vec2<double> error;  ///< how far its uv is from the one looked for, absolute
+        Vec2<double> du, dv; ///< derivatives of the uv by the parameters of the quad
+    };
+    /// Finds the place whose uv is that of (x, y). May be outside of the face where that is bicubic.
+    Match match(double x, double y) const;
+    /// The same on side k at s of its length, without leaving the side: only along it the uv is matched.
+    Match match_on_side(size_t k, double s) const;
+
+  private:
+    Match evaluate(const Vec2<double>& at, const Vec2<double>& wanted) const;
+
+    const LimitFace& uv_face_;
+    const QuadPlace& place_;
+    std::array<Vec2<double>, 4> uvs_;
+};
+
+/// Point s of side k of the unit square.
+Vec2<double> find_place_on_side(size_t k, double s);
+
+} // namespace relief
