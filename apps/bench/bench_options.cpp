@@ -1,5 +1,8 @@
 #include "bench/bench_options.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include <CLI/CLI.hpp>
 
 #include "bench/suites.h"
@@ -18,19 +21,38 @@ void add_run_options(CLI::App& verb, BenchOptions& o) {
     const auto add = [&](const char* name, const char* value, const char* help, auto parse) {
         verb.add_option_function<std::string>(name, parse, help)->type_name(value);
     };
-    add("--runs", "N", "that count, after one to warm up; default 5, of cycles 3",
+    add("--runs", "N", "that count, after one to warm up; default 5, of cycles and characters 3",
         [&o](const std::string& text) { o.runs = int(parse_integer("--runs", text, 1, kMaxRuns)); });
     add("--scenes", "LIST",
         "paper1: of party,bark,barks,pumpkin; paper2: of body,hall,knot; paper3: these and pumpkin,bark; "
         "peers: of party,rock,rock_mild,rocks,rocks_mild,rock_close,rock_close_mild,pumpkin,bark; "
-        "cycles: of rock,rocks,rock_close,pumpkin,ear; frame: sample scenes; default: all, of cycles "
+        "cycles: of rock,rocks,rock_close,pumpkin,ear; characters: of body,head,crowd; frame: sample scenes; "
+        "default: all, of cycles "
         "rock,rocks,pumpkin, of frame pumpkin,bark,party",
         [&o](const std::string& text) {
             o.scenes = split(text, ',');
             if (o.scenes.empty()) refuse_value("--scenes", text, "a list of scenes");
         });
-    verb.add_option("--mesh", o.meshes, "paper2, paper3, triangles: measure this mesh, too; may be repeated")
+    verb.add_option("--mesh", o.meshes,
+                    "paper2, paper3, triangles: measure this mesh, too; characters: in place of its own "
+                    "scenes; may be "
+                    "repeated")
         ->type_name("FILE");
+    verb.add_option("--vdm", o.maps,
+                    "characters: displacement map of the mesh, may hold <UDIM>; once for each --mesh")
+        ->type_name("MAP");
+    add("--space", "NAME", "characters: space of the maps: object, tangent or world",
+        [&o](const std::string& text) {
+            constexpr std::string_view kSpaces[] = {"object", "tangent", "world"};
+            if (std::ranges::find(kSpaces, text) == std::end(kSpaces))
+                refuse_value("--space", text, "object, tangent or world");
+            o.map_space = text;
+        });
+    verb.add_option(
+            "--blender", o.blenders,
+            "characters: a program blender, or a python3 with the package bpy; may be repeated; default: "
+            "the one in PATH")
+        ->type_name("PROGRAM");
     verb.add_option("--scene", o.scene_files, "peers: measure this scene; may be repeated")
         ->type_name("FILE");
     verb.add_option("--baseline", o.baseline,
@@ -52,8 +74,7 @@ void add_setting_options(CLI::App& verb, BenchOptions& o) {
     };
     add("--size", "WxH",
         "pixels; default 1280x720 for paper1, peers, cycles, edits and frame, 320x180 for paper2, 640x360 "
-        "for "
-        "paper3",
+        "for paper3; characters: 240x320 and 1280x1706",
         [&o](const std::string& text) { o.size = parse_size("--size", text, kMaxPictureSize); });
     add("--spp", "N", "frame: samples a pixel; default 16",
         [&o](const std::string& text) { o.spp = int(parse_integer("--spp", text, 1, kMaxSamples)); });
@@ -83,6 +104,9 @@ std::vector<std::string_view> list_given(const BenchOptions& o) {
         {"--scenes", !o.scenes.empty()},
         {"--mesh", !o.meshes.empty()},
         {"--scene", !o.scene_files.empty()},
+        {"--vdm", !o.maps.empty()},
+        {"--space", !o.map_space.empty()},
+        {"--blender", !o.blenders.empty()},
         {"--baseline", !o.baseline.empty()},
         {"--size", o.size.has_value()},
         {"--spp", o.spp.has_value()},

@@ -24,6 +24,9 @@ struct BenchOptions {
     std::optional<std::pair<int, int>> size;
     std::vector<std::string> scenes; ///< none: all of the suite
     std::vector<std::string> meshes, scene_files;
+    std::vector<std::string> maps;     ///< of the meshes, in their order; or none
+    std::string map_space;             ///< of all maps; empty: as the files say
+    std::vector<std::string> blenders; ///< programs; none: the one in PATH
     std::optional<int> runs, spp;
     std::filesystem::path baseline; ///< another build of the command; empty: none
     std::optional<uint64_t> tessellated_limit_bytes;

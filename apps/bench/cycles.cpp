@@ -51,16 +51,6 @@ std::vector<CaseRuns> list_cases(int samples) {
             {{.samples = 1, .bounces = 0, .importance_map = kDefaultImportanceMap}, {}, {}}};
 }
 
-Value describe_runs(const std::vector<Measures>& runs) {
-    Value result;
-    for (const auto& [name, first] : runs.front()) {
-        std::vector<double> values;
-        for (const Measures& run : runs) values.push_back(run.at(name));
-        result[name] = summarize(std::move(values));
-    }
-    return result;
-}
-
 double get_median(const Value& side, const char* measure) { return side[measure]["median"].get<double>(); }
 
 Value describe_case(const CaseRuns& runs) {
@@ -69,7 +59,7 @@ Value describe_case(const CaseRuns& runs) {
                     {"importance_map", runs.what.importance_map == kDefaultImportanceMap
                                            ? Value("Blender's default")
                                            : Value(runs.what.importance_map)}};
-    const Value cycles = describe_runs(runs.cycles), relief = describe_runs(runs.relief);
+    const Value cycles = summarize_measures(runs.cycles), relief = summarize_measures(runs.relief);
     for (const char* measure : {"first_sample_s", "render_s", "with_reading_s"})
         result["times_sooner"][measure] = get_median(cycles, measure) / get_median(relief, measure);
     result["share_of_resident_peak"] =

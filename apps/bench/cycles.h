@@ -30,8 +30,10 @@ CyclesOptions make_quick_options(CyclesOptions options);
 /// The scene with white diffuse surfaces lit by its sky only: the common subset of both renderers.
 Scene make_cycles_scene(const std::string& name);
 
-/// Source of the script that Blender runs on a folder written by save_scene.
+/// Source of the script that Blender runs on a folder written by save_scene, and of the one for the suite
+/// characters, which imports it as the module cycles_scene.
 const char* cycles_script();
+const char* character_script();
 
 /// Compares two pictures: {hit_pixels, masks_differ, brightness_ratio}.
 Value compare_with_cycles(const Image& relief, const Image& cycles);

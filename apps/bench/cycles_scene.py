@@ -1,6 +1,6 @@
 """Builds a scene folder of Relief in Blender and renders it with Cycles.
 
-Displaced meshes are diced adaptively at one pixel. Coordinates stay as they are, y up: the camera is placed and the sky is
+Displaced and smooth meshes are diced adaptively at one pixel. Coordinates stay as they are, y up: the camera is placed and the sky is
 turned accordingly. Runs inside Blender: blender -b --factory-startup --python cycles_scene.py -- OPTIONS
 """
 import argparse
@@ -13,7 +13,7 @@ import bpy
 from mathutils import Euler, Matrix, Vector
 
 
-def parse_arguments():
+def make_parser():
     parser = argparse.ArgumentParser()
     parser.add_argument("--scene", required=True, help="scene.json, as `relief scene` writes it")
     parser.add_argument("--size", required=True, help="WxH pixels")
@@ -24,7 +24,12 @@ def parse_arguments():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--denoise", type=int, default=0, help="1: by Open Image Denoise, with albedo and normal")
     parser.add_argument("--output", help="EXR with the background left out, written after the render")
-    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
+    return parser
+
+
+def list_words():
+    """The words of the command line that are for the script."""
+    return sys.argv[sys.argv.index("--") + 1:]
 
 
 def tell(line):
@@ -33,8 +38,10 @@ def tell(line):
 
 
 def read_obj(file):
-    """Positions, faces and the uv of each corner. Supports only OBJ as Relief writes it: no negative indices."""
-    positions, uvs, faces, corner_uvs = [], [], [], []
+    """Positions, faces, the uv of each corner, and creases as (a, b, sharpness).
+
+    Supports only OBJ as Relief writes it: no negative indices, one crease a tag."""
+    positions, uvs, faces, corner_uvs, creases = [], [], [], [], []
     with open(file, encoding="ascii") as stream:
         for line in stream:
             words = line.split()
@@ -48,11 +55,22 @@ def read_obj(file):
                 corners = [word.split("/") for word in words[1:]]
                 faces.append([int(corner[0]) - 1 for corner in corners])
                 corner_uvs += [uvs[int(corner[1]) - 1] for corner in corners if len(corner) > 1 and corner[1]]
-    return positions, faces, corner_uvs
+            elif words[:2] == ["t", "crease"]:
+                creases.append((int(words[3]), int(words[4]), float(words[5])))
+    return positions, faces, corner_uvs, creases
+
+
+def add_creases(mesh, creases):
+    """Cycles takes ten times the value of an edge for its sharpness, Blender and Relief ten times its square."""
+    is_cycles = bpy.context.scene.render.engine == "CYCLES"
+    sharpness = {frozenset((a, b)): min(value / 10, 1) for a, b, value in creases}
+    values = [sharpness.get(frozenset(edge.vertices), 0) for edge in mesh.edges]
+    layer = mesh.attributes.new("crease_edge", "FLOAT", "EDGE")
+    layer.data.foreach_set("value", values if is_cycles else [math.sqrt(value) for value in values])
 
 
 def make_mesh(name, file, flips_v, is_smooth):
-    positions, faces, corner_uvs = read_obj(file)
+    positions, faces, corner_uvs, creases = read_obj(file)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(positions, [], faces)
     if corner_uvs:
@@ -60,11 +78,31 @@ def make_mesh(name, file, flips_v, is_smooth):
         layer.data.foreach_set("uv", [x for u, v in corner_uvs for x in (u, 1 - v if flips_v else v)])
     mesh.polygons.foreach_set("use_smooth", [is_smooth] * len(faces))
     mesh.update()
+    if creases:
+        add_creases(mesh, creases)
     return mesh
 
 
+def list_tiles(pattern):
+    """{number: file} of the tiles that are there."""
+    folder, name = os.path.split(pattern)
+    start, end = name.split("<UDIM>")
+    found = {file[len(start):len(start) + 4]: file for file in os.listdir(folder) if file.startswith(start) and file.endswith(end)}
+    return {int(number): os.path.join(folder, file) for number, file in found.items() if number.isdigit()}
+
+
 def load_image(file):
-    image = bpy.data.images.load(file)
+    """One image, or all tiles of a name with <UDIM>."""
+    if "<UDIM>" in file:
+        tiles = list_tiles(file)
+        image = bpy.data.images.load(tiles[min(tiles)])
+        image.source, image.filepath = "TILED", file
+        for number in sorted(tiles):
+            if image.tiles.get(number) is None:
+                image.tiles.new(tile_number=number)
+        image.tiles.active_index = 0
+    else:
+        image = bpy.data.images.load(file)
     image.colorspace_settings.name = "Non-Color"
     return image
 
@@ -77,8 +115,8 @@ def parse_axes(text):
 
 def add_displacement(tree, entry, folder):
     """Nodes for (texel - midlevel) scale along signed axes. Height maps move along the normal."""
-    if "<UDIM>" in entry["file"] or entry["wrap"] not in ("clamp", "repeat", "black"):
-        raise SystemExit("a map with tiles, or that is mirrored, cannot be handed to Cycles")
+    if entry["wrap"] not in ("clamp", "repeat", "black"):
+        raise SystemExit("a map that is mirrored cannot be handed to Cycles")
     texture = tree.nodes.new("ShaderNodeTexImage")
     texture.image = load_image(os.path.join(folder, entry["file"]))
     texture.extension = {"clamp": "EXTEND", "repeat": "REPEAT", "black": "CLIP"}[entry["wrap"]]
@@ -124,27 +162,49 @@ def make_material(scene, item, folder):
     return material
 
 
-def dice(thing):
+def dice(thing, subdivision):
     """Adaptive subdivision. Blender first evaluates the modifier at its own level, which must be 0."""
     modifier = thing.modifiers.new("dice", "SUBSURF")
-    modifier.subdivision_type = "SIMPLE"
+    modifier.subdivision_type = "CATMULL_CLARK" if subdivision.get("scheme") == "catmark" else "SIMPLE"
     modifier.levels = modifier.render_levels = 0
-    thing.cycles.use_adaptive_subdivision = True
-    thing.cycles.dicing_rate = 1.0
+    modifier.uv_smooth = "NONE" if subdivision.get("uv") == "linear" else "PRESERVE_CORNERS_AND_JUNCTIONS"
+    modifier.boundary_smooth = "ALL" if subdivision.get("boundary") == "edge-only" else "PRESERVE_CORNERS"
+    modifier.use_creases = subdivision.get("creases", True) is not False
+    if hasattr(modifier, "use_adaptive_subdivision"):  # Blender 5.0 moved it
+        modifier.use_adaptive_subdivision, modifier.adaptive_pixel_size = True, 1.0
+    else:
+        thing.cycles.use_adaptive_subdivision = True
+        thing.cycles.dicing_rate = 1.0
 
 
-def add_object(scene, item, folder):
+def add_object(scene, item, folder, meshes):
+    """`meshes`: those made so far; objects share them, and have materials of their own."""
+    entry = scene["meshes"][item["mesh"]]
+    subdivision = entry.get("subdivision", {})
     is_displaced = "displacement" in item
+    is_smooth = is_displaced or bool(subdivision)
     flips_v = is_displaced and scene["displacements"][item["displacement"]]["flip_v"]
-    file = os.path.join(folder, scene["meshes"][item["mesh"]]["file"])
-    thing = bpy.data.objects.new(item.get("name", "object"), make_mesh(item["mesh"], file, flips_v, is_displaced))
+    key = (item["mesh"], flips_v, is_smooth)
+    if key not in meshes:
+        meshes[key] = make_mesh(item["mesh"], os.path.join(folder, entry["file"]), flips_v, is_smooth)
+        meshes[key].materials.append(None)
+    thing = bpy.data.objects.new(item.get("name", "object"), meshes[key])
     bpy.context.scene.collection.objects.link(thing)
-    thing.data.materials.append(make_material(scene, item, folder))
+    thing.material_slots[0].link = "OBJECT"
+    thing.material_slots[0].material = make_material(scene, item, folder)
     if "transform" in item:
         values = item["transform"]["matrix"]
         thing.matrix_world = Matrix([values[row * 4:row * 4 + 4] for row in range(4)])
-    if is_displaced:
-        dice(thing)
+    if is_smooth:
+        dice(thing, subdivision)
+    return thing
+
+
+def look(thing, camera):
+    """Places the camera's object."""
+    back = (Vector(camera["from"]) - Vector(camera["to"])).normalized()
+    right = Vector(camera["up"]).cross(back).normalized()
+    thing.matrix_world = Matrix.Translation(camera["from"]) @ Matrix((right, back.cross(right), back)).transposed().to_4x4()
 
 
 def place_camera(camera):
@@ -156,10 +216,9 @@ def place_camera(camera):
     data.clip_start, data.clip_end = 1e-3, 1e5
     thing = bpy.data.objects.new("camera", data)
     bpy.context.scene.collection.objects.link(thing)
-    back = (Vector(camera["from"]) - Vector(camera["to"])).normalized()
-    right = Vector(camera["up"]).cross(back).normalized()
-    thing.matrix_world = Matrix.Translation(camera["from"]) @ Matrix((right, back.cross(right), back)).transposed().to_4x4()
+    look(thing, camera)
     bpy.context.scene.camera = thing
+    return thing
 
 
 def make_world(environment, folder, importance_map):
@@ -199,7 +258,9 @@ def choose_settings(arguments):
     render.use_compositing = render.use_sequencer = False
     render.film_transparent = arguments.output is not None
     cycles = bpy.context.scene.cycles
-    cycles.device, cycles.feature_set = "CPU", "EXPERIMENTAL"
+    cycles.device = "CPU"
+    if hasattr(cycles, "feature_set"):  # adaptive subdivision is no experiment from Blender 5.0 on
+        cycles.feature_set = "EXPERIMENTAL"
     cycles.dicing_rate, cycles.max_subdivisions = 1.0, 12
     cycles.samples, cycles.seed = arguments.samples, arguments.seed
     cycles.use_adaptive_sampling = cycles.use_auto_tile = False
@@ -217,8 +278,8 @@ def read_peak_resident():
         return next(int(line.split()[1]) * 1024 for line in stream if line.startswith("VmHWM:"))
 
 
-def main():
-    arguments = parse_arguments()
+def build_scene(arguments):
+    """Returns the scene as JSON has it, the objects in its order, and the camera."""
     if getattr(bpy.app, "module", False):  # without the command `blender` and its --factory-startup
         bpy.ops.wm.read_factory_settings()
     with open(arguments.scene, encoding="utf-8") as stream:
@@ -227,19 +288,30 @@ def main():
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     choose_settings(arguments)
-    for item in scene["objects"]:
-        add_object(scene, item, folder)
-    place_camera(scene["camera"])
+    meshes = {}
+    things = [add_object(scene, item, folder, meshes) for item in scene["objects"]]
+    camera = place_camera(scene["camera"])
     make_world(scene["environment"], folder, arguments.importance_map)
+    return scene, things, camera
+
+
+def save_picture(file):
+    settings = bpy.context.scene.render.image_settings
+    settings.file_format, settings.color_depth, settings.color_mode = "OPEN_EXR", "32", "RGBA"
+    bpy.data.images["Render Result"].save_render(file)
+
+
+def main():
+    arguments = make_parser().parse_args(list_words())
+    build_scene(arguments)
     tell("blender " + bpy.app.version_string)
     tell("render starts")
     bpy.ops.render.render()
     tell("render ends")
     tell(f"peak resident {read_peak_resident()}")
     if arguments.output:
-        settings = bpy.context.scene.render.image_settings
-        settings.file_format, settings.color_depth, settings.color_mode = "OPEN_EXR", "32", "RGBA"
-        bpy.data.images["Render Result"].save_render(arguments.output)
+        save_picture(arguments.output)
 
 
-main()
+if __name__ == "__main__":
+    main()

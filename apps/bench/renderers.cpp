@@ -12,6 +12,7 @@
 #include "bench/child_process.h"
 #include "bench/cycles.h"
 #include "bench/cycles_log.h"
+#include "bench/measure.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -21,7 +22,23 @@ namespace {
 
 using Arguments = std::vector<std::pair<const char*, std::string>>;
 
-/// Command that runs a Python script in Blender, which follows it; Blender as a module serves as well.
+ChildResult run_with(std::vector<std::string> words, const Arguments& arguments) {
+    for (const auto& [option, value] : arguments) words.insert(words.end(), {option, value});
+    return run_checked(words);
+}
+
+} // namespace
+
+Value summarize_measures(const std::vector<Measures>& runs) {
+    Value result;
+    for (const auto& [name, first] : runs.front()) {
+        std::vector<double> values;
+        for (const Measures& run : runs) values.push_back(run.at(name));
+        result[name] = summarize(std::move(values));
+    }
+    return result;
+}
+
 std::vector<std::string> find_blender() {
     if (const auto blender = find_program("blender"))
         return {blender->string(),    "-b", "-noaudio", "--factory-startup",
@@ -36,13 +53,6 @@ std::vector<std::string> find_blender() {
                  "install Blender; on Debian: apt-get install --no-install-recommends blender; or "
                  "pip install bpy"});
 }
-
-ChildResult run_with(std::vector<std::string> words, const Arguments& arguments) {
-    for (const auto& [option, value] : arguments) words.insert(words.end(), {option, value});
-    return run_checked(words);
-}
-
-} // namespace
 
 std::string describe_size(const RenderSettings& settings) {
     return fmt::format("{}x{}", settings.image.width, settings.image.height);

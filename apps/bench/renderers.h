@@ -28,6 +28,13 @@ struct RenderTask {
 /// Measures of one render of one program.
 using Measures = std::map<std::string, double>;
 
+/// Each measure of at least one run, which all have the same, by its name as summarize() describes it.
+Value summarize_measures(const std::vector<Measures>& runs);
+
+/// Command that runs a Python script in Blender, which follows it; Blender as a module serves as well. Throws
+/// Error{usage} where neither `blender` nor a `python3` with the package bpy is in PATH.
+std::vector<std::string> find_blender();
+
 /// As WxH.
 std::string describe_size(const RenderSettings& settings);
 /// Those asked for, or all of the machine.

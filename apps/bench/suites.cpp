@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "bench/characters.h"
 #include "bench/cycles.h"
 #include "bench/edits.h"
 #include "bench/frame.h"
@@ -118,6 +119,37 @@ SuiteResult run_quality_suite(const BenchOptions& o, const Report& report) {
     return run_beside_cycles(o, report, {640, 360}, run_quality, make_quality_table);
 }
 
+/// The n-th map belongs to the n-th mesh.
+std::vector<CharacterFile> list_character_files(const BenchOptions& o) {
+    if (!o.maps.empty() && o.maps.size() != o.meshes.size())
+        throw Error(ErrorKind::usage, {fmt::format("{} maps for {} meshes", o.maps.size(), o.meshes.size()),
+                                       "--vdm", "give one --vdm for each --mesh, in the same order"});
+    if (o.maps.empty() && !o.map_space.empty())
+        throw Error(ErrorKind::usage, {"--space needs a displacement map", "--space", "add --vdm MAP"});
+    std::vector<CharacterFile> files;
+    for (size_t k = 0; k < o.meshes.size(); ++k) {
+        CharacterFile file{o.meshes[k], {.reader = cli::make_mesh_reader()}};
+        if (!o.maps.empty()) file.options.displacement_map = o.maps[k];
+        if (!o.map_space.empty()) file.options.map.space = o.map_space;
+        files.push_back(std::move(file));
+    }
+    return files;
+}
+
+/// Mesh files replace the suite's own scenes, unless those are requested as well.
+SuiteResult run_characters_suite(const BenchOptions& o, const Report& report) {
+    CharactersOptions options;
+    options.threads = o.settings.device.threads;
+    options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
+    options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
+    options.files = list_character_files(o);
+    options.blenders = {o.blenders.begin(), o.blenders.end()};
+    if (o.size) options.sizes = {*o.size};
+    options.scenes = check_scenes(o, character_scene_names());
+    if (!o.meshes.empty()) options.scenes = o.scenes;
+    return run_suite(o, std::move(options), report, run_characters, make_characters_table);
+}
+
 /// CPU engine, own scene.
 SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
     EditsOptions options;
@@ -195,6 +227,10 @@ const std::vector<Suite>& list_suites() {
          "error against time beside Blender's Cycles, denoised and not",
          run_quality_suite,
          {"--scenes", "--size", "--threads"}},
+        {"characters",
+         "subdivision surfaces of characters beside Cycles in Blender, from cold and in sessions",
+         run_characters_suite,
+         {"--scenes", "--mesh", "--vdm", "--space", "--blender", "--size", "--threads"}},
         {"edits",
          "a painted rectangle of a map until the next picture, beside a fresh load",
          run_edits_suite,
