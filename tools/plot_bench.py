@@ -296,6 +296,44 @@ def chart_cycles(r):
                        for case in scene["cases"]]}
 
 
+CHARACTERS = ["body", "head", "crowd"]
+
+
+def chart_characters(r):
+    s = r["settings"]
+    where = (f"{s['samples']} samples, {s['bounces']} bounces, {s['threads']} threads, {r['machine']['processor']}; medians of "
+             f"{s['runs']} runs; commit {r['build']['commit']}")
+    notes = [where, "Every panel has an axis of its own.", *(f"Skipped: {one['name']}: {one['reason']}" for one in r["skipped"])]
+
+    def panel(case, make):
+        return make_panel(f"{case['width']} x {case['height']}", [make(*item) for item in case["programs"].items()])
+
+    def cold_bar(name, program):
+        first, render = (program[part]["median"] for part in ("first_sample_s", "render_s"))
+        return make_bar(name, [first, max(render - first, 0)], program["render_s"])
+
+    def memory_bar(name, program):
+        return make_bar(name, [program["resident_peak_bytes"]["median"]], program["resident_peak_bytes"])
+
+    def session_panel(case, measure):
+        bars = [make_bar(name, [program[measure]["median"]], program[measure])
+                for name, program in case["programs"].items() if measure in program]
+        return make_panel(measure.removesuffix("_s"), bars, f"{case['width']} x {case['height']}")
+
+    names = list(dict.fromkeys(case["scene"] for case in r["cases"]))
+    for number, name in enumerate(names):
+        stem = name if name in CHARACTERS else f"file{number}"
+        cases = [case for case in r["cases"] if case["scene"] == name]
+        yield f"characters_{stem}_cold", {"title": f"{name}: from cold", "axis": "seconds", "series": ["first sample", "the others"],
+                                          "panels": [panel(case, cold_bar) for case in cases], "notes": notes}
+        yield f"characters_{stem}_memory", {"title": f"{name}: peak resident memory", "axis": "bytes of the process", "units": BYTES,
+                                            "series": ["resident"], "panels": [panel(case, memory_bar) for case in cases],
+                                            "notes": notes}
+        yield f"characters_{stem}_session", {
+            "title": f"{name}: the next picture in a session", "axis": "seconds", "series": ["one sample"], "notes": notes,
+            "panels": [session_panel(case, measure) for case in cases for measure in ("turned_s", "moved_s", "changed_s")]}
+
+
 def chart_frame(r):
     s = r["settings"]
     programs = ["baseline", "relief"] if "baseline" in r else ["relief"]
@@ -367,7 +405,8 @@ def chart_quality(r):
 
 
 CHARTS = {"paper1": chart_paper1, "paper2": chart_paper2, "paper3": chart_paper3, "peers": chart_peers, "cycles": chart_cycles,
-          "quality": chart_quality, "frame": chart_frame, "edits": lambda _: [], "triangles": lambda _: []}  # tables say it all
+          "quality": chart_quality, "characters": chart_characters, "frame": chart_frame,
+          "edits": lambda _: [], "triangles": lambda _: []}  # tables say it all
 
 
 def read_result(file):

@@ -52,7 +52,7 @@ CharacterInput write_input(const std::string& name, const Scene& scene, const st
 
 } // namespace
 
-std::string name_character(const CharacterFile& file) { return file.mesh.stem().string(); }
+std::string name_character(const CharacterFile& file) { return file.mesh.filename().string(); }
 
 CharacterInput write_character(const std::string& name, CharacterDetail detail,
                                const std::filesystem::path& folder) {

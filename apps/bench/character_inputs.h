@@ -26,7 +26,7 @@ struct CharacterInput {
     Vec3f move;                        ///< of the first object
 };
 
-/// Name of a file's scene: that of the mesh file without its extension.
+/// Name of a file's scene: that of the mesh file without its folder.
 std::string name_character(const CharacterFile& file);
 
 /// Writes a generated scene below `folder`. Throws as save_scene.

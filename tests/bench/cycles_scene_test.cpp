@@ -42,7 +42,7 @@ TEST(CyclesScene, is_white_and_lit_by_the_sky_alone) {
 TEST(CyclesScript, is_whole) {
     const std::string script = cycles_script();
     for (const char* words : {"\"\"\"Builds a scene folder", "displacement_method = \"DISPLACEMENT\"",
-                              "use_adaptive_subdivision = True", "render_levels = 0", "\nmain()\n"})
+                              "use_adaptive_subdivision = True", "render_levels = 0", "\n    main()\n"})
         EXPECT_NE(script.find(words), std::string::npos) << words;
 }
 

@@ -22,6 +22,7 @@ using namespace samples;
 
 // The body in lattice steps: 26 high, arms stretched out to 32.
 constexpr float kBodyScale = 1.75f / 26; ///< metres a step
+constexpr Vec2f kShoulder{3, 19};        ///< x and y of the joint, steps
 constexpr int kGutter = 1;               ///< steps between strips and ends of boxes in the map
 constexpr uint32_t kBodySeed = 501, kHeadSeed = 701, kPlaceSeed = 91;
 constexpr int kCrowdColumns = 4, kCrowdRows = 5;
@@ -96,14 +97,23 @@ std::vector<std::array<UvRectangle, kBoxSides>> place_sides(const std::vector<La
     return rectangles;
 }
 
+/// Lets the arms, which are stretched out, hang down to both sides.
+Vec3f lower_arm(Vec3f p) {
+    const float side = p.x < 0 ? -1.0f : 1.0f, x = std::fabs(p.x);
+    const float angle = -0.8f * smooth_step(2, 6, x), c = std::cos(angle), s = std::sin(angle);
+    const float across = x - kShoulder.x, up = p.y - kShoulder.y;
+    if (x <= kShoulder.x - 1) return p;
+    return {side * (kShoulder.x + c * across - s * up), kShoulder.y + s * across + c * up, p.z};
+}
+
 BoxMesh make_body(CharacterDetail detail) {
     const int cells = detail == CharacterDetail::full ? 4 : 1;
     const std::vector<LatticeBox> boxes = make_body_boxes();
     const auto rectangles = place_sides(boxes);
     BoxMesh body =
         make_box_mesh(boxes, cells, [&](size_t box, int side) { return rectangles[box][size_t(side)]; });
-    smooth_positions(body.mesh, 2 * cells * cells);
-    for (Vec3f& p : body.mesh.positions) p = p * kBodyScale;
+    smooth_positions(body.mesh, 5 * cells * cells);
+    for (Vec3f& p : body.mesh.positions) p = lower_arm(p) * kBodyScale;
     add_crease_loop(body, 1, cells, kInfiniteSharpness);                             // of the shoes
     add_crease_loop(body, 1, 14 * cells, 2.5f);                                      // the belt
     for (const int wrist : {-12, 12}) add_crease_loop(body, 0, wrist * cells, 1.2f); // the cuffs
@@ -151,8 +161,8 @@ BoxMesh make_head(CharacterDetail detail) {
 /// Muscles and folds of a surface `size` units high, sideways too.
 Vec3f compute_relief(const SurfacePoint& at, float size, uint32_t seed) {
     const Vec3f p = at.position * (1 / size);
-    const float muscle = 0.010f * fractal_noise(p * 13.0f, 3, seed);
-    const float fold = 0.006f * ridged_noise(p * 34.0f, 3, seed + 1);
+    const float muscle = 0.012f * fractal_noise(p * 9.0f, 3, seed);
+    const float fold = 0.004f * ridged_noise(p * 34.0f, 3, seed + 1);
     const Vec3f sideways{noise(p * 21.0f, seed + 2), noise(p * 21.0f, seed + 3), noise(p * 21.0f, seed + 4)};
     return (at.normal * (muscle + fold) + (sideways - at.normal * dot(sideways, at.normal)) * 0.004f) * size;
 }
@@ -203,7 +213,7 @@ Scene make_body_scene(CharacterDetail detail) {
     Scene scene = start_scene(body.mesh);
     const MapRecipe recipe{.size = choose_map_size(1024, detail), .seed = kBodySeed, .height = 1.75f};
     add_object(scene, "body", make_map("body", SurfaceFinder(body), recipe), {});
-    look_from(scene.camera, {1.2f, 1.5f, 4.6f}, {0, 0.9f, 0}, 33);
+    look_from(scene.camera, {1.2f, 1.5f, 4.6f}, {0, 0.87f, 0}, 28);
     return scene;
 }
 
