@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <chrono>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <string_view>
@@ -99,7 +99,11 @@ std::vector<std::vector<std::string>> list_blenders(const std::vector<fs::path>&
 bool is_newer(const std::string& a, const std::string& b) {
     const auto list_numbers = [](const std::string& text) {
         std::array<int, 3> numbers{};
-        std::sscanf(text.c_str(), "%d.%d.%d", &numbers[0], &numbers[1], &numbers[2]);
+        const char *place = text.data(), *end = place + text.size();
+        for (int& number : numbers) {
+            place = std::from_chars(place, end, number).ptr;
+            if (place < end) ++place; // the point
+        }
         return numbers;
     };
     return list_numbers(a) > list_numbers(b);
