@@ -38,7 +38,7 @@ def tell(line):
 
 
 def read_obj(file):
-    """Positions, faces, the uv of each corner, and creases as (a, b, sharpness).
+    """Positions, faces, the uv of each corner, and creases as (a, b, sharpness); of corners b is a.
 
     Supports only OBJ as Relief writes it: no negative indices, one crease a tag."""
     positions, uvs, faces, corner_uvs, creases = [], [], [], [], []
@@ -57,16 +57,23 @@ def read_obj(file):
                 corner_uvs += [uvs[int(corner[1]) - 1] for corner in corners if len(corner) > 1 and corner[1]]
             elif words[:2] == ["t", "crease"]:
                 creases.append((int(words[3]), int(words[4]), float(words[5])))
+            elif words[:2] == ["t", "corner"]:
+                creases.append((int(words[3]), int(words[3]), float(words[4])))
     return positions, faces, corner_uvs, creases
 
 
 def add_creases(mesh, creases):
-    """Cycles takes ten times the value of an edge for its sharpness, Blender and Relief ten times its square."""
+    """Cycles takes ten times the value of an edge or point for its sharpness, Blender and Relief ten times its square."""
     is_cycles = bpy.context.scene.render.engine == "CYCLES"
-    sharpness = {frozenset((a, b)): min(value / 10, 1) for a, b, value in creases}
-    values = [sharpness.get(frozenset(edge.vertices), 0) for edge in mesh.edges]
-    layer = mesh.attributes.new("crease_edge", "FLOAT", "EDGE")
-    layer.data.foreach_set("value", values if is_cycles else [math.sqrt(value) for value in values])
+
+    def find_value(sharpness):
+        return min(sharpness / 10, 1) if is_cycles else math.sqrt(min(sharpness / 10, 1))
+
+    values = {frozenset((a, b)): find_value(sharpness) for a, b, sharpness in creases}
+    edges = mesh.attributes.new("crease_edge", "FLOAT", "EDGE")
+    edges.data.foreach_set("value", [values.get(frozenset(edge.vertices), 0) for edge in mesh.edges])
+    points = mesh.attributes.new("crease_vert", "FLOAT", "POINT")
+    points.data.foreach_set("value", [values.get(frozenset((k,)), 0) for k in range(len(mesh.vertices))])
 
 
 def make_mesh(name, file, flips_v, is_smooth):
