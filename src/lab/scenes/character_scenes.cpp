@@ -234,14 +234,14 @@ Scene make_crowd_scene(CharacterDetail detail) {
     Random random(kPlaceSeed);
     for (int k = 0; k < kCrowdColumns * kCrowdRows; ++k) {
         const int column = k % kCrowdColumns, row = k / kCrowdColumns;
-        const float x = (float(column) - 1.5f) * 2.2f + random.range(-0.1f, 0.1f);
+        const float x = (float(column) - 1.5f) * 1.7f + random.range(-0.1f, 0.1f);
         const float z = float(-row) * 1.6f + random.range(-0.2f, 0.2f);
         const MapRecipe recipe{
             .size = choose_map_size(512, detail), .seed = kBodySeed + 10 * uint32_t(k + 1), .height = 1.75f};
         const std::string name = fmt::format("body_{}", k);
         add_object(scene, name, make_map(name, surface, recipe), place({x, 0, z}, 1, random.range(-25, 25)));
     }
-    look_from(scene.camera, {0, 9, 14}, {0, 0.6f, -3}, 32);
+    look_from(scene.camera, {0, 12, 11}, {0, 0.3f, -3.2f}, 28);
     return scene;
 }
 
