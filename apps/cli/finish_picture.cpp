@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +17,7 @@
 #include "relief/io.h"
 #include "render_warnings.h"
 #include "statistics_report.h"
+#include "wait_notice.h"
 
 namespace relief::cli {
 
@@ -34,7 +37,8 @@ void print_summary(const RenderResult& result, const RenderSettings& settings) {
                settings.image.width, settings.image.height,
                result.whole_samples == settings.image.spp ? "" : fmt::format("{} to ", result.whole_samples),
                settings.image.spp, rays, s.render_s, s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
-    fmt::print(stderr, "read in {:.3f} s, prepared in {:.3f} s\n", s.load_s, s.prepare_s);
+    fmt::print(stderr, "read in {:.3f} s, prepared in {:.3f} s{}\n", s.load_s, s.prepare_s,
+               s.denoise_s > 0 ? fmt::format(", denoised in {:.3f} s", s.denoise_s) : "");
     fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
 }
@@ -45,12 +49,40 @@ int get_exit_code(const RenderResult& result, const Saved& saved) {
     return kExitDone;
 }
 
+/// Shows on the progress of a render that the denoiser works, and at the end for how long it did.
+class DenoisingNotice {
+  public:
+    explicit DenoisingNotice(const ProgressOptions& options)
+        : printer_(options), notice_(std::in_place, printer_, "denoising", std::chrono::milliseconds(0)) {}
+    void finish(double seconds) {
+        notice_.reset();
+        Progress progress;
+        progress.fraction = -1, progress.elapsed_s = seconds;
+        printer_.print(progress, "denoised");
+    }
+
+  private:
+    ProgressPrinter printer_;
+    std::optional<WaitNotice> notice_;
+};
+
+/// What ended the render.
+void print_ends(const RenderOptions& options, const RenderSettings& settings, const RenderResult& result) {
+    if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
+    if (options.progress.is_quiet) return;
+    if (result.is_out_of_time)
+        fmt::print(stderr,
+                   "relief: the time limit ended the render: each pixel has at least {} of {} samples\n",
+                   result.whole_samples, settings.image.spp);
+}
+
 /// Not after an interrupt, which asks for an end. Whatever happens to it, the picture is there to be written;
 /// returns the exit code.
 int denoise_picture(const RenderOptions& options, RenderResult& result) {
     const double start = get_seconds();
     const auto is_interrupted = [] { return get_interrupt() != 0; };
     int exit_code = kExitDone;
+    DenoisingNotice notice(options.progress);
     try {
         if (!options.denoiser->denoise(result.image, is_interrupted)) {
             fmt::print(stderr, "relief: interrupted; the picture is not denoised\n");
@@ -61,6 +93,7 @@ int denoise_picture(const RenderOptions& options, RenderResult& result) {
         exit_code = int(ErrorKind::failed);
     }
     result.statistics.denoise_s = get_seconds() - start;
+    if (exit_code == kExitDone) notice.finish(result.statistics.denoise_s);
     return exit_code;
 }
 
@@ -68,6 +101,17 @@ int denoise_picture(const RenderOptions& options, RenderResult& result) {
 
 double get_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+RenderSettings reserve_time(const RenderOptions& options, RenderSettings settings,
+                            const PendingTimes& waiting) {
+    ImageSettings& image = settings.image;
+    if (image.time_limit_s == 0) return settings;
+    const Window crop = image.crop == Window{} ? Window{0, 0, image.width, image.height} : image.crop;
+    const size_t pixels = size_t(crop.x1 - crop.x0) * size_t(crop.y1 - crop.y0);
+    const double denoising_s = options.is_denoised ? options.denoiser->estimate_seconds(pixels) : 0;
+    image.time_reserved_s = get_seconds() - waiting.start + denoising_s;
+    return settings;
 }
 
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,
@@ -93,12 +137,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     fmt::print("wrote {}\n", saved.file.string());
     std::fflush(stdout); // the sender of edits waits for it
     if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
-    if (!result.is_complete)
-        fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
-    else if (!options.progress.is_quiet && !has_all_samples(result, settings))
-        fmt::print(stderr,
-                   "relief: the time limit ended the render: each pixel has at least {} of {} samples\n",
-                   result.whole_samples, settings.image.spp);
+    print_ends(options, settings, result);
     const int exit_code = get_exit_code(result, saved);
     return exit_code != kExitDone ? exit_code : denoised;
 }

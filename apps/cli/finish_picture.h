@@ -20,6 +20,10 @@ struct PendingTimes {
     double start, load_s;
 };
 
+/// With a time limit, sets aside what has passed since the wait began and what denoising will take.
+RenderSettings reserve_time(const RenderOptions& options, RenderSettings settings,
+                            const PendingTimes& waiting);
+
 /// Writes a picture and what goes with it; returns the exit code. Warnings that were not told yet are
 /// printed.
 int finish_picture(const RenderOptions& options, const RenderSettings& settings,

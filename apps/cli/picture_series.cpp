@@ -43,6 +43,7 @@ void PictureSeries::prepare(const Shot::View& view, int frame) {
 
 int PictureSeries::show(const Shot::View& view, int frame, const std::filesystem::path& output,
                         const std::string& step, const PendingTimes& waiting) {
+    settings_ = reserve_time(options_, settings_, waiting);
     if (settings_.surface.mode == SurfaceMode::tessellated) return show_alone(view, output, step, waiting);
     prepare(view, frame);
     const auto render_next = [&](RenderObserver* observer) {

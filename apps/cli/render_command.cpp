@@ -72,9 +72,10 @@ struct Source {
     int frame = 1;
 };
 
-int render_picture(const RenderOptions& options, const RenderSettings& settings, Scene scene,
+int render_picture(const RenderOptions& options, const RenderSettings& given, Scene scene,
                    const Source& source, const PendingTimes& waiting) {
     catch_interrupts();
+    const RenderSettings settings = reserve_time(options, given, waiting);
     const std::filesystem::path& output = options.output;
     RenderResult result;
     ToldWarnings told;

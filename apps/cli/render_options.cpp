@@ -98,7 +98,8 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
         [&o](const std::string& text) {
             o.settings.image.noise = float(parse_number("--noise", text, 1e-6, 1));
         });
-    add(verb, "--time-limit", "S", "no more samples after so many seconds; every pixel gets one",
+    add(verb, "--time-limit", "S",
+        "ends after so many seconds, preparing and denoising included; every pixel gets a sample",
         [&o](const std::string& text) {
             o.settings.image.time_limit_s = parse_number("--time-limit", text, 1e-3, 1e9);
         });

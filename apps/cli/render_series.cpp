@@ -71,8 +71,9 @@ int render_turns(const RenderOptions& options, const RenderSettings& settings, S
     return exit_code;
 }
 
-int render_edits(const RenderOptions& options, const RenderSettings& settings, Scene scene,
+int render_edits(const RenderOptions& options, const RenderSettings& given, Scene scene,
                  PendingTimes waiting) {
+    const RenderSettings settings = reserve_time(options, given, {get_seconds(), 0});
     std::ifstream file;
     if (options.edits != "-") file.open(options.edits);
     std::vector<std::string> files = list_files(scene);

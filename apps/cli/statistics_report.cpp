@@ -1,6 +1,7 @@
 #include "statistics_report.h"
 
 #include "relief/version.h"
+
 namespace relief::cli {
 
 namespace {
@@ -51,11 +52,7 @@ Value make_casts(const Statistics& s) {
 
 } // namespace
 
-bool has_all_samples(const RenderResult& result, const RenderSettings& settings) {
-    const double limit_s = settings.image.time_limit_s;
-    const bool is_out_of_time = limit_s > 0 && result.statistics.render_s >= limit_s;
-    return result.is_complete && !(is_out_of_time && result.whole_samples < settings.image.spp);
-}
+bool has_all_samples(const RenderResult& result) { return result.is_complete && !result.is_out_of_time; }
 
 Value describe_statistics(const RenderResult& result, const RenderSettings& settings) {
     const Statistics& s = result.statistics;
@@ -68,7 +65,7 @@ Value describe_statistics(const RenderResult& result, const RenderSettings& sett
                      {"bounces", settings.image.bounces},
                      {"clamp_indirect", settings.image.clamp_indirect},
                      {"whole_samples", result.whole_samples},
-                     {"is_complete", has_all_samples(result, settings)}};
+                     {"is_complete", has_all_samples(result)}};
     root["scene"] = {{"meshes", s.meshes},
                      {"instances", s.instances},
                      {"patches", s.patches},

@@ -11,6 +11,6 @@ Value describe_statistics(const RenderResult& result, const RenderSettings& sett
 
 /// False where a render was cancelled or its time limit left samples out. Pixels whose noise is low enough
 /// lack none.
-bool has_all_samples(const RenderResult& result, const RenderSettings& settings);
+bool has_all_samples(const RenderResult& result);
 
 } // namespace relief::cli

@@ -46,7 +46,14 @@ class Denoiser {
     /// these channels, Error{out_of_memory}, and Error{failed} where the library fails.
     bool denoise(Image& picture, const std::function<bool()>& is_cancelled = {}) const;
 
+    /// How long denoise() will take for a picture of so many pixels: by the last one, or else by small
+    /// ones, which take a few tenths of a second. Throws as denoise().
+    double estimate_seconds(size_t pixel_count) const;
+
   private:
+    bool filter_picture(Image& picture, const std::function<bool()>& is_cancelled) const;
+    double time_filter(int edge) const;
+
     struct Library;
     std::unique_ptr<Library> library_;
 };

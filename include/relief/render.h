@@ -74,8 +74,12 @@ struct ImageSettings {
     /// samples each.
     float noise = 0;
     static constexpr int kLeastNoiseSamples = 16; ///< of a pixel, before noise is judged
-    double time_limit_s = 0; ///< above 0: no more samples after so many seconds, but one of each pixel
-    int bounces = 4;         ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
+    /// Above 0: the render ends after so many seconds, preparation included, but not before each pixel has a
+    /// sample. Passes become smaller towards the limit, down to one sample a pixel, and one that would not
+    /// end in time is not begun.
+    double time_limit_s = 0;
+    double time_reserved_s = 0; ///< of time_limit_s, for what the caller does before and after the render
+    int bounces = 4;            ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     /// Above 0: light that a path finds after its first bounce, by a ray towards a light or by chance, adds
     /// no more than this to any component. Less noise, and less light; 0: all of it.
     float clamp_indirect = 0;
@@ -177,8 +181,10 @@ class RenderObserver {
     /// ray.
     virtual double picture_interval_s() const { return std::numeric_limits<double>::infinity(); }
     /// The picture so far, as RenderResult::image has it, without metadata: called as soon as every pixel has
-    /// a sample, then every picture_interval_s(), up to the time that a tile takes, while no sample is
-    /// traced.
+    /// a sample, then every picture_interval_s() or a little later, while no sample is traced. All pixels
+    /// have the same number of samples then, but for those that low noise spares, and unless one pass over
+    /// the picture takes more than two seconds. The CPU engine makes passes of a second or the interval,
+    /// whichever is longer, as far as that is possible without making them slow.
     virtual void on_picture(Image picture) { (void)picture; }
 };
 
@@ -215,8 +221,9 @@ struct Checkpoints {
 struct RenderResult {
     Image image; ///< R G B A and the requested layers; linear, data window = crop
     Statistics statistics;
-    bool is_complete = true; ///< false if cancelled; "samples.Y" then holds the number of samples of each
-                             ///< pixel, as it does where a time limit or low noise ended the render
+    bool is_complete = true;     ///< false if cancelled; "samples.Y" then holds the number of samples of each
+                                 ///< pixel, as it does where a time limit or low noise ended the render
+    bool is_out_of_time = false; ///< the time limit ended the render before all samples were there
     /// Samples that every pixel has; 0 if cancelled before the first pass over the picture was whole: pixels
     /// without samples are then 0, and the image is not to be shown.
     int whole_samples = 0;

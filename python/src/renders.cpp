@@ -106,6 +106,9 @@ nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, nb::objec
         if (is_checked)
             for (std::string& warning : find_doubts(parsed.scene))
                 parsed.scene.warnings.push_back(std::move(warning));
+        if (denoiser && settings.image.time_limit_s > 0)
+            settings.image.time_reserved_s =
+                denoiser->estimate_seconds(size_t(settings.image.width) * size_t(settings.image.height));
         RenderResult result = render_parsed(parsed, settings, observer);
         if (!denoiser || result.whole_samples == 0) return result;
         const auto start = std::chrono::steady_clock::now();

@@ -1,7 +1,9 @@
 #include "api/moving_picture.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/timer.h"
 #include "engine/sample_plan.h"
@@ -80,6 +82,10 @@ bool render_samples(Film& film, const ImageSettings& image, const RenderControl&
     std::optional<SampleObserver> observer;
     if (control.observer) observer.emplace(*control.observer, image.spp);
     Pauses pauses(control);
+    const double left_s = image.time_limit_s > 0
+                              ? image.time_limit_s - image.time_reserved_s - control.spent_s
+                              : std::numeric_limits<double>::infinity();
+    double before_s = 0;
     for (int last = std::max(film.passes.target - 1, 0); last < image.spp; ++last) {
         for (int sample = find_first_lacking(film, end_with(image, last)); sample <= last; ++sample) {
             if (control.observer && control.observer->is_cancelled()) return false;
@@ -90,7 +96,9 @@ bool render_samples(Film& film, const ImageSettings& image, const RenderControl&
             if (observer) observer->start_sample(sample);
             if (!stage.render(film, RenderControl(observer ? &*observer : nullptr))) return false;
             pauses.call();
-            if (image.time_limit_s > 0 && timer.seconds() >= image.time_limit_s) return true;
+            // The next sample takes about as long as this one.
+            const double now_s = timer.seconds(), sample_s = now_s - std::exchange(before_s, now_s);
+            if (left_s - now_s < sample_s) return true;
         }
     }
     return true;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "engine/sample_plan.h"
 #include "prepare/camera_frame.h"
 #include "relief/version.h"
 
@@ -186,6 +187,11 @@ std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash
                        image.crop.y0, image.crop.x1, image.crop.y1, image.seed, image.first_sample,
                        describe_settings(settings), fmt::join(layers, ","), image.noise,
                        settings.device.engine == EngineKind::cpu ? "cpu" : "vulkan");
+}
+
+void note_ends(const ImageSettings& image, Film& film, RenderResult& result) {
+    result.whole_samples = int(film.least_samples());
+    result.is_out_of_time = result.is_complete && image.time_limit_s > 0 && lacks_samples(film, image);
 }
 
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, const Film& film,

@@ -35,6 +35,9 @@ PictureSpace make_picture_space(const PreparedScene& scene);
 /// All that the samples of a picture depend on, as text: films of another are not to be gone on with.
 std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash);
 
+/// Says in the result of a render how far its film came. It adds no samples afterwards.
+void note_ends(const ImageSettings& image, Film& film, RenderResult& result);
+
 /// Writes version, seed, sample range, scene hash and whether pixels lack samples into the metadata.
 void add_metadata(const RenderSettings& settings, uint64_t scene_hash, bool is_complete, const Film& film,
                   Image& image);

@@ -83,6 +83,7 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         if (observer) observer->on_warnings(stage->scene->warnings);
         const Timer timer;
         RenderControl control = make_control(observer, checkpoints, film, identity);
+        control.spent_s = total.seconds();
         const PictureSpace space = make_picture_space(*stage->scene);
         show_pictures(film, space, control);
         try {
@@ -97,7 +98,7 @@ RenderResult render(Scene scene, const RenderSettings& given, RenderObserver* ob
         SessionCounts counts;
         collect_statistics(*stage->engine, film, *stage->scene, statistics, counts);
         stage.reset(); // frees its memory before the image is allocated
-        result.whole_samples = int(film.least_samples());
+        note_ends(settings.image, film, result);
         result.image = film.resolve(space);
         add_metadata(settings, scene_hash, result.is_complete, film, result.image);
     });

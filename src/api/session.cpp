@@ -67,6 +67,7 @@ struct Session::Implementation {
     bool trace_picture(const PictureSpace& space, RenderObserver* observer) {
         need_engine();
         RenderControl control(observer);
+        control.spent_s = prepare_s;
         if (film) {
             show_pictures(*film, space, control);
             return engine->refresh(*film, control);
@@ -227,6 +228,7 @@ bool Session::Implementation::trace_moving(double frame, const UpdateScene& upda
     resume_film(checkpoints, identity, *film);
     join_parts(checkpoints.parts, settings, scene_hash, mattes, *film);
     RenderControl control(observer);
+    const Timer timer;
     control.save.interval_s = checkpoints.interval_s;
     if (checkpoints.save)
         control.save.call = [&] {
@@ -240,6 +242,7 @@ bool Session::Implementation::trace_moving(double frame, const UpdateScene& upda
         },
         [&](Film& target, const RenderControl& part) { return engine->render(target, part); }};
     if (has_motion_layer()) find_motions(frame, update, camera);
+    control.spent_s = prepare_s + timer.seconds();
     try {
         const bool is_complete = render_samples(*film, settings.image, control, stage);
         if (control.save.call) control.save.call();
@@ -295,7 +298,7 @@ RenderResult Session::Implementation::show(RenderObserver* observer, const Trace
         statistics.render_s = timer.seconds();
         statistics.prepare_s = std::exchange(prepare_s, 0);
         collect_statistics(*engine, *film, *editor->scene(), statistics, counts);
-        result.whole_samples = int(film->least_samples());
+        note_ends(settings.image, *film, result);
         result.image = film->resolve(space);
         add_metadata(settings, scene_hash, result.is_complete, *film, result.image);
     });

@@ -110,7 +110,9 @@ class CpuEngine final : public Engine, private PassTracer {
     }
 
   private:
-    void start_pass() override { tracer_.rebuild_if_worthwhile(); }
+    void start_step() override { tracer_.rebuild_if_worthwhile(); }
+    /// Samples are added one by one.
+    bool keeps_bits() const override { return true; }
 
     void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) override {
         const Tracer::StopScope scope(tracer_, [&] { return monitor.is_cancelled(); });

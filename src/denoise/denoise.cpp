@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/check.h"
+#include "base/timer.h"
 #include "denoise/oidn_library.h"
 #include "relief/error.h"
 
@@ -74,6 +75,8 @@ void append_channels(const Channels& names, Image& picture) {
 struct Denoiser::Library {
     oidn::Functions call;
     oidn::Device device = nullptr;
+    /// Of a picture: what does not depend on its size, and what one pixel adds; negative: not known.
+    double fixed_s = 0, pixel_s = -1;
 
     explicit Library(const DenoiserSettings& settings) : call(oidn::load_functions(settings.libraries)) {
         device = call.NewDevice(oidn::kDeviceCpu);
@@ -148,7 +151,36 @@ std::string Denoiser::version() const {
     return fmt::format("{}.{}.{}", version / 10000, version / 100 % 100, version % 100);
 }
 
+/// Seconds of one of the filters for a grey square, the largest one.
+double Denoiser::time_filter(int edge) const {
+    Image picture;
+    picture.width = picture.height = edge;
+    std::vector<float> grey(3 * size_t(edge) * size_t(edge), 0.5f), clean(grey.size());
+    const Timer timer;
+    library_->filter({{"color", &grey}, {"albedo", &grey}, {"normal", &grey}}, clean, picture, {});
+    return timer.seconds();
+}
+
+double Denoiser::estimate_seconds(size_t pixel_count) const {
+    if (library_->pixel_s < 0) {
+        constexpr int kSmall = 64, kLarge = 256, kFilters = 4;
+        time_filter(kSmall); // the first call starts threads
+        const double small_s = time_filter(kSmall), large_s = time_filter(kLarge);
+        library_->pixel_s = kFilters * std::max(large_s - small_s, 0.0) / (kLarge * kLarge - kSmall * kSmall);
+        library_->fixed_s = kFilters * small_s;
+    }
+    return library_->fixed_s + library_->pixel_s * double(pixel_count);
+}
+
 bool Denoiser::denoise(Image& picture, const std::function<bool()>& is_cancelled) const {
+    const Timer timer;
+    if (!filter_picture(picture, is_cancelled)) return false;
+    const size_t pixels = picture.pixels.size() / picture.channels.size();
+    library_->fixed_s = 0, library_->pixel_s = timer.seconds() / double(pixels);
+    return true;
+}
+
+bool Denoiser::filter_picture(Image& picture, const std::function<bool()>& is_cancelled) const {
     if (picture.find_channel(kNoisy[0]))
         throw Error(ErrorKind::bad_input, {"the picture is denoised already", "", ""});
     const std::array<size_t, 3> color = find_channels(picture, kColor);

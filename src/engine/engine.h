@@ -26,7 +26,8 @@ struct RenderControl {
 
     RenderObserver* observer;
     Interruption save;
-    Interruption show; ///< once as soon as every pixel has a sample, then at its intervals
+    Interruption show;  ///< once as soon as every pixel has a sample, then at its intervals
+    double spent_s = 0; ///< of the time limit, before the render began
 };
 
 class Engine {

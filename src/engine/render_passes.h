@@ -20,17 +20,24 @@ class PassMonitor {
     bool is_cancelled() const { return control_.observer && control_.observer->is_cancelled(); }
     /// Whether tracing is to end before the next task, or within one where that is possible.
     bool must_stop() const { return is_cancelled() || is_out_of_time() || must_save() || must_show(); }
-    bool is_out_of_time() const;
+    bool is_out_of_time() const { return has_first_pass_ && left_s() <= 0; }
+    /// Until the time limit; infinity: there is none.
+    double left_s() const { return time_limit_s_ - timer_.seconds(); }
     /// A task is done: so many samples and rays. Reports progress now and then.
     void finish_task(uint64_t pixel_samples, uint64_t rays);
 
     /// The film has so many samples of each pixel already.
     void start(int samples_a_pixel);
-    void start_pass(double fraction, uint64_t pixel_samples);
-    void finish_pass(int samples_a_pixel);
+    void start_step();
+    /// Of the samples that are to be traced for a picture, `fraction` of `pixel_samples` are there.
+    void start_tasks(double fraction, uint64_t pixel_samples);
+    void finish_step(int samples_a_pixel);
     /// Saves and shows what is due. Never twice without a task between.
     void interrupt();
     double seconds() const { return timer_.seconds(); }
+    /// Of the current step.
+    double step_seconds() const { return step_timer_.seconds(); }
+    uint64_t step_pixel_samples() const { return step_done_; }
 
   private:
     void report();
@@ -38,26 +45,33 @@ class PassMonitor {
         return control_.save.call && is_unsaved_ && save_timer_.seconds() >= control_.save.interval_s;
     }
     bool must_show() const {
-        return control_.show.call && has_first_pass_ && is_unseen_ &&
+        const bool is_whole = !is_in_step_ || step_timer_.seconds() >= kLongStep;
+        return control_.show.call && has_first_pass_ && is_unseen_ && is_whole &&
                (!has_shown_ || show_timer_.seconds() >= control_.show.interval_s);
     }
 
+    /// Seconds from which on pictures of a step that is not whole are shown.
+    static constexpr double kLongStep = 2;
+
     const RenderControl& control_;
-    double time_limit_s_;
-    bool has_first_pass_ = false, has_shown_ = false;
+    double time_limit_s_; ///< for this render; infinity: none
+    bool has_first_pass_ = false, has_shown_ = false, is_in_step_ = false;
     std::atomic<bool> is_unsaved_{false}, is_unseen_{false}; ///< samples since the last call
-    std::atomic<uint64_t> done_{0}, rays_{0};                ///< done: pixel samples of this pass
+    std::atomic<uint64_t> done_{0}, step_done_{0}, rays_{0}; ///< pixel samples: of a list of tasks, of a step
     double fraction_ = 0, share_of_sample_ = 0;
     std::mutex mutex_;
     Progress progress_;
-    Timer timer_, save_timer_, show_timer_;
+    Timer timer_, step_timer_, save_timer_, show_timer_;
 };
 
 /// The part of an engine that traces.
 class PassTracer {
   public:
     virtual ~PassTracer() = default;
-    virtual void start_pass() {}
+    /// No ray is being traced: before each step of a pass.
+    virtual void start_step() {}
+    /// See PassPace::Config.
+    virtual bool keeps_bits() const = 0;
     /// Traces tasks until all are done or monitor.must_stop(). All pixels of a block of SamplePlan then have
     /// the same number of samples.
     virtual void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) = 0;

@@ -5,15 +5,13 @@
 
 #include "base/parallel.h"
 #include "engine/picture_windows.h"
+#include "engine/scattered_tiles.h"
 
 namespace relief {
 
 namespace {
 
 constexpr int kLongestPass = 16; ///< samples a pixel
-/// Standard errors that ImageSettings::noise is compared with: 95 of 100 values of a normal distribution lie
-/// within 1.96, so that 95 of 100 pixels of a block are closer than 1.25 times the noise to their mean.
-constexpr double kDeviations = 1.96 / 1.25;
 /// Blocks beside a noisy one go on while they have this share of its noise: neither edges of blocks nor
 /// features that cross them show.
 constexpr double kNeighbourShare = 0.5;
@@ -42,14 +40,14 @@ int SamplePlan::count_of(size_t block) const {
     return int(film_.sample_count(blocks_[block].x0, blocks_[block].y0));
 }
 
-bool SamplePlan::lacks_samples(size_t block) const {
-    return film_.passes.is_active[block] && count_of(block) < target();
+bool SamplePlan::lacks_samples(size_t block, int end) const {
+    return film_.passes.is_active[block] && count_of(block) < end;
 }
 
 bool SamplePlan::start_pass() {
     const auto is_lacking = [this] {
         for (size_t block = 0; block < blocks_.size(); ++block)
-            if (lacks_samples(block)) return true;
+            if (lacks_samples(block, target())) return true;
         return false;
     };
     while (!is_lacking()) {
@@ -66,7 +64,7 @@ void SamplePlan::choose_blocks() {
     std::vector<double> errors(blocks_.size());
     parallel_for("estimate_noise", blocks_.size(), 64, [&](size_t begin, size_t end) {
         for (size_t block = begin; block < end; ++block)
-            errors[block] = kDeviations * film_.estimate_error(blocks_[block]);
+            errors[block] = estimate_block_noise(film_, blocks_[block]);
     });
     const size_t rows = blocks_.size() / columns_;
     for (size_t row = 0; row < rows; ++row)
@@ -79,34 +77,51 @@ void SamplePlan::choose_blocks() {
         }
 }
 
-std::vector<SampleTask> SamplePlan::list_tasks(int edge) const {
+PassRest SamplePlan::find_rest() const {
+    PassRest rest{target(), target()};
+    for (size_t block = 0; block < blocks_.size(); ++block) {
+        if (!film_.passes.is_active[block]) continue;
+        const int count = count_of(block);
+        const uint64_t pixels = count_pixels(blocks_[block]);
+        rest.pixel_samples_ahead += pixels * uint64_t(std::max(image_.spp - count, 0));
+        if (count >= target()) continue;
+        rest.begin = std::min(rest.begin, count);
+        rest.pixels += pixels;
+    }
+    return rest;
+}
+
+std::vector<SampleTask> SamplePlan::list_tasks(int edge, int end) {
+    if (tile_edge_ != edge) tiles_ = cut_into_scattered_tiles(film_.window(), edge), tile_edge_ = edge;
     std::vector<SampleTask> tasks;
     const Window& whole = film_.window();
     const auto find_block = [&](const Window& window) {
         return size_t(window.y0 / kBlockEdge - whole.y0 / kBlockEdge) * columns_ +
                size_t(window.x0 / kBlockEdge - whole.x0 / kBlockEdge);
     };
-    for (const Window& tile : cut_into_windows(whole, edge)) {
+    for (const Window& tile : tiles_) {
         const size_t before = tasks.size();
         bool is_uniform = true;
         for (const Window& window : cut_into_windows(tile, kBlockEdge)) {
             const size_t block = find_block(window);
             const int first = count_of(block);
-            is_uniform &= lacks_samples(block) && (tasks.size() == before || first == tasks[before].first);
-            if (!lacks_samples(block)) continue;
+            is_uniform &=
+                lacks_samples(block, end) && (tasks.size() == before || first == tasks[before].first);
+            if (!lacks_samples(block, end)) continue;
             // Rays of neighbours are traced together; those of blocks apart would be in each other's way.
             SampleTask* const left = tasks.size() == before ? nullptr : &tasks.back();
             if (left && left->first == first && left->window.x1 == window.x0 && left->window.y0 == window.y0)
                 left->window.x1 = window.x1;
             else
-                tasks.push_back(
-                    {window, first,
-                     std::min(target(), first / kLongestPass * kLongestPass + kLongestPass) - first});
+                tasks.push_back({window, first,
+                                 std::min(end, first / kLongestPass * kLongestPass + kLongestPass) - first});
         }
         if (is_uniform) tasks.resize(before + 1), tasks.back().window = tile;
     }
     return tasks;
 }
+
+bool lacks_samples(Film& film, const ImageSettings& image) { return SamplePlan(film, image).start_pass(); }
 
 double SamplePlan::fraction() const {
     double there = 0;

@@ -58,6 +58,8 @@ void validate_settings(const RenderSettings& s) {
             fmt::format("1 to {} a pixel", kMaxSamples));
     require(s.image.noise >= 0 && s.image.noise <= 1, "the noise is out of range",
             "0: not regarded, or up to 1, as a share of brightness");
+    require(s.image.time_reserved_s >= 0 && std::isfinite(s.image.time_reserved_s),
+            "the reserved part of the time limit is out of range", "seconds, at least 0 (none)");
     require(s.image.time_limit_s >= 0 && std::isfinite(s.image.time_limit_s),
             "the time limit is out of range", "seconds, at least 0 (none)");
     const auto is_color = [](const Vec3f& c) {

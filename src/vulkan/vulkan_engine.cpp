@@ -58,6 +58,8 @@ class VulkanEngine final : public Engine, private PassTracer {
     SizedTracer<RayBatch>& batches() const;
     uint64_t count_rays() const;
     void require_drawable(const Window& window) const;
+    /// A device sums up the samples of a step, in single precision.
+    bool keeps_bits() const override { return false; }
     void trace(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor) override;
     void trace_tasks(Film& film, std::span<const SampleTask> tasks, PassMonitor& monitor);
 

@@ -170,6 +170,24 @@ TEST(TimeLimit, ends_a_render_with_one_sample_at_least) {
     EXPECT_TRUE(result.is_complete);
     EXPECT_GE(result.whole_samples, 1);
     EXPECT_LT(result.statistics.camera_rays, uint64_t(60 * 44) * 64);
+    EXPECT_TRUE(result.is_out_of_time);
+}
+
+TEST(TimeLimit, counts_what_the_caller_does_besides) {
+    RenderSettings settings = make_kept_settings(1 << 20);
+    settings.image.time_limit_s = settings.image.time_reserved_s = 1000;
+    const RenderResult result = render(make_torus_scene(), settings);
+    EXPECT_EQ(result.statistics.camera_rays, uint64_t(60 * 44)) << "there is time for the first pass alone";
+    EXPECT_EQ(result.whole_samples, 1);
+}
+
+TEST(TimeLimit, that_is_not_reached_changes_no_bits) {
+    RenderSettings settings = make_kept_settings(20);
+    const Image all = render(make_torus_scene(), settings).image;
+    settings.image.time_limit_s = 1e6;
+    const RenderResult result = render(make_torus_scene(), settings);
+    EXPECT_FALSE(result.is_out_of_time);
+    EXPECT_EQ(result.image.pixels, all.pixels);
 }
 
 } // namespace relief

@@ -36,6 +36,9 @@ TEST(Settings, of_pictures_have_ranges) {
         RenderSettings settings;
         settings.image.clamp_indirect = limit;
         EXPECT_THROW(render(Scene{}, settings), Error) << limit;
+        settings = {};
+        settings.image.time_reserved_s = double(limit);
+        EXPECT_THROW(render(Scene{}, settings), Error) << limit;
     }
 }
 
