@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -66,7 +67,21 @@ class DenoisingNotice {
     std::optional<WaitNotice> notice_;
 };
 
-/// What ended the render.
+/// Where the noise asked for was not reached everywhere, the line says which was.
+void print_noise(const NoiseReport& noise) {
+    const auto asked = float(noise.asked); // as it was written
+    if (noise.reached_pixels == noise.pixels)
+        return fmt::print(stderr, "relief: noise: all {} pixels reached {}\n", noise.pixels, asked);
+    const uint64_t others = noise.pixels - noise.reached_pixels;
+    fmt::print(stderr,
+               "relief: noise: {} of {} pixels ({:.1f} %) reached {}; half of the other {} are below {:.3g}, "
+               "the worst are at {:.3g}\n",
+               noise.reached_pixels, noise.pixels,
+               std::floor(1000.0 * double(noise.reached_pixels) / double(noise.pixels)) / 10, asked, others,
+               noise.median, noise.most);
+}
+
+/// What ended the render, and how good the picture is.
 void print_ends(const RenderOptions& options, const RenderSettings& settings, const RenderResult& result) {
     if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
     if (options.progress.is_quiet) return;
@@ -74,6 +89,7 @@ void print_ends(const RenderOptions& options, const RenderSettings& settings, co
         fmt::print(stderr,
                    "relief: the time limit ended the render: each pixel has at least {} of {} samples\n",
                    result.whole_samples, settings.image.spp);
+    if (result.noise) print_noise(*result.noise);
 }
 
 /// Not after an interrupt, which asks for an end. Whatever happens to it, the picture is there to be written;

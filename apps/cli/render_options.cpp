@@ -94,7 +94,7 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
         o.given.seed = uint32_t(parse_integer("--seed", text, 0, 0xffffffffll));
     });
     add(verb, "--noise", "F",
-        "no more samples where the error is below this share of the brightness, e.g. 0.02",
+        "no more samples where the error is below this share of the brightness, e.g. 0.1",
         [&o](const std::string& text) {
             o.settings.image.noise = float(parse_number("--noise", text, 1e-6, 1));
         });

@@ -1,5 +1,7 @@
 #include "statistics_report.h"
 
+#include <cmath>
+
 #include "relief/version.h"
 
 namespace relief::cli {
@@ -50,6 +52,16 @@ Value make_casts(const Statistics& s) {
     return casts;
 }
 
+/// Infinity has no number in JSON.
+Value make_noise(const NoiseReport& noise) {
+    const auto write = [](double value) { return std::isfinite(value) ? Value(value) : Value(); };
+    return {{"asked", float(noise.asked)},
+            {"pixels", noise.pixels},
+            {"reached_pixels", noise.reached_pixels},
+            {"median_of_others", write(noise.median)},
+            {"most", write(noise.most)}};
+}
+
 } // namespace
 
 bool has_all_samples(const RenderResult& result) { return result.is_complete && !result.is_out_of_time; }
@@ -66,6 +78,7 @@ Value describe_statistics(const RenderResult& result, const RenderSettings& sett
                      {"clamp_indirect", settings.image.clamp_indirect},
                      {"whole_samples", result.whole_samples},
                      {"is_complete", has_all_samples(result)}};
+    if (result.noise) root["noise"] = make_noise(*result.noise);
     root["scene"] = {{"meshes", s.meshes},
                      {"instances", s.instances},
                      {"patches", s.patches},

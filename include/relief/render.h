@@ -218,12 +218,22 @@ struct Checkpoints {
     std::vector<FilmPart> parts;
 };
 
+/// Of a render with ImageSettings::noise: where it was reached. Noise is estimated in blocks of 8 x 8 pixels.
+struct NoiseReport {
+    double asked = 0;
+    uint64_t pixels = 0, reached_pixels = 0;
+    /// Of the pixels that have more noise than was asked for: what half of them are below, and the most;
+    /// infinity where pixels have one sample, 0 where there are no such pixels.
+    double median = 0, most = 0;
+};
+
 struct RenderResult {
     Image image; ///< R G B A and the requested layers; linear, data window = crop
     Statistics statistics;
     bool is_complete = true;     ///< false if cancelled; "samples.Y" then holds the number of samples of each
                                  ///< pixel, as it does where a time limit or low noise ended the render
     bool is_out_of_time = false; ///< the time limit ended the render before all samples were there
+    std::optional<NoiseReport> noise; ///< with ImageSettings::noise, if every pixel has a sample
     /// Samples that every pixel has; 0 if cancelled before the first pass over the picture was whole: pixels
     /// without samples are then 0, and the image is not to be shown.
     int whole_samples = 0;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "engine/block_noise.h"
 #include "engine/sample_plan.h"
 #include "prepare/camera_frame.h"
 #include "relief/version.h"
@@ -191,6 +192,7 @@ std::string describe_samples(const RenderSettings& settings, uint64_t scene_hash
 
 void note_ends(const ImageSettings& image, Film& film, RenderResult& result) {
     result.whole_samples = int(film.least_samples());
+    if (image.noise > 0 && result.whole_samples > 0) result.noise = measure_noise(film, image.noise);
     result.is_out_of_time = result.is_complete && image.time_limit_s > 0 && lacks_samples(film, image);
 }
 

@@ -14,4 +14,7 @@ inline constexpr int kNoiseBlockEdge = 8;
 /// has estimates of errors.
 double estimate_block_noise(const Film& film, const Window& block);
 
+/// Of a film whose render has ended.
+NoiseReport measure_noise(const Film& film, double noise);
+
 } // namespace relief

@@ -190,4 +190,19 @@ TEST(TimeLimit, that_is_not_reached_changes_no_bits) {
     EXPECT_EQ(result.image.pixels, all.pixels);
 }
 
+TEST(Noise, says_how_many_pixels_reached_it) {
+    RenderSettings settings = make_kept_settings(16);
+    EXPECT_FALSE(render(make_torus_scene(), settings).noise.has_value()) << "nobody asked";
+    settings.image.noise = 1e-6f;
+    const RenderResult few = render(make_torus_scene(), settings);
+    ASSERT_TRUE(few.noise.has_value());
+    EXPECT_EQ(few.noise->pixels, 60u * 44u);
+    EXPECT_LT(few.noise->reached_pixels, 60u * 44u);
+    EXPECT_GT(few.noise->most, 1e-6);
+    settings.image.noise = 1;
+    const RenderResult all = render(make_torus_scene(), settings);
+    EXPECT_EQ(all.noise->reached_pixels, 60u * 44u);
+    EXPECT_EQ(all.noise->most, 0);
+}
+
 } // namespace relief

@@ -106,6 +106,25 @@ TEST_F(Checkpoint, a_limit_shorter_than_the_preparation_leaves_one_sample) {
     EXPECT_NE(cut.errors.find("each pixel has at least 1 of 64 samples"), std::string::npos) << cut.errors;
 }
 
+TEST_F(Checkpoint, says_which_noise_was_reached) {
+    const CommandResult none = render({"--spp", "32", "-o", "a.exr", "--stats", "s.json"});
+    EXPECT_EQ(none.errors.find("noise"), std::string::npos) << "nobody asked: " << none.errors;
+    EXPECT_FALSE(nlohmann::json::parse(read("s.json")).contains("noise"));
+    const CommandResult few =
+        render({"--spp", "16", "--noise", "0.000001", "-o", "a.exr", "--stats", "s.json"});
+    EXPECT_NE(few.errors.find("of 6144 pixels ("), std::string::npos) << few.errors;
+    EXPECT_NE(few.errors.find("reached 1e-06; half of the other "), std::string::npos) << few.errors;
+    nlohmann::json noise = nlohmann::json::parse(read("s.json"))["noise"];
+    EXPECT_EQ(noise["pixels"], 6144);
+    EXPECT_LT(noise["reached_pixels"], 6144);
+    EXPECT_GE(noise["most"], noise["median_of_others"]);
+    EXPECT_GT(noise["median_of_others"], noise["asked"]);
+    const CommandResult all = render({"--spp", "16", "--noise", "1", "-o", "a.exr", "--stats", "s.json"});
+    EXPECT_NE(all.errors.find("noise: all 6144 pixels reached 1\n"), std::string::npos) << all.errors;
+    EXPECT_EQ(nlohmann::json::parse(read("s.json"))["noise"]["reached_pixels"], 6144);
+    EXPECT_EQ(render({"--spp", "16", "--noise", "1", "-q", "-o", "a.exr"}).errors, "");
+}
+
 TEST_F(Checkpoint, tells_what_cannot_be_gone_on_with) {
     EXPECT_EQ(render({"--spp", "2", "-o", "a.exr"}).exit_code, 0);
     CommandResult result = render({"--spp", "4", "--resume", "a.exr"});
