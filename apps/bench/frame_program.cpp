@@ -40,10 +40,10 @@ FrameProgram::FrameProgram(fs::path program, fs::path folder, const RenderSettin
         engine_words_.insert(engine_words_.end(), {"--device", std::to_string(s.device.index)});
     // Builds of one version would overwrite each other's compiled kernels.
     if (!is_cpu_) variables_ = {"XDG_CACHE_HOME=" + (fs::absolute(folder) / "cache").string()};
-    picture_words_ = {"--size",    describe_size(s),
-                      "--spp",     std::to_string(s.image.spp),
-                      "--bounces", std::to_string(s.image.bounces),
-                      "--threads", std::to_string(count_threads(s))};
+    picture_words_ = {"--size", describe_size(s), "--spp", std::to_string(s.image.spp), "--bounces",
+                      std::to_string(s.image.bounces), "--threads", std::to_string(count_threads(s)),
+                      // No limit: programs have other defaults, and older ones do not take 0.
+                      "--clamp-indirect", "1e9"};
 }
 
 fs::path FrameProgram::write_scene(const std::string& name, const fs::path& folder) const {

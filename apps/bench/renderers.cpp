@@ -109,6 +109,7 @@ Measures Renderers::render_with_relief(const std::filesystem::path& scene, const
                                 {"--size", size_},
                                 {"--spp", std::to_string(task.samples)},
                                 {"--bounces", std::to_string(task.bounces)},
+                                {"--clamp-indirect", "0"}, // as of Cycles in cycles_scene.py
                                 {"--seed", std::to_string(task.seed)},
                                 {"--threads", threads_}});
     std::ifstream stream(statistics);

@@ -103,9 +103,10 @@ void add_picture_options(CLI::App& verb, RenderOptions& o) {
         [&o](const std::string& text) {
             o.settings.image.time_limit_s = parse_number("--time-limit", text, 1e-3, 1e9);
         });
-    add(verb, "--clamp-indirect", "F", "no more radiance than this by one path after its first bounce",
+    add(verb, "--clamp-indirect", "F",
+        "limits the light of one path after its first bounce, which removes specks; 0: no limit; default 10",
         [&o](const std::string& text) {
-            o.settings.image.clamp_indirect = float(parse_number("--clamp-indirect", text, 1e-6, 1e9));
+            o.settings.image.clamp_indirect = float(parse_number("--clamp-indirect", text, 0, 1e9));
         });
     verb.add_flag("--denoise", o.is_denoised,
                   "by Open Image Denoise 2, if it is installed; .exr keeps the noisy colour as a layer");
@@ -321,10 +322,9 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
          {"--seed", "--edits", "--pixel", "--pixel-error", "--bottom-cache", "--surface", "--lod",
           "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
-    for (const char* name :
-         {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate", "--type", "--frame",
-          "--lengths", "--encoding", "--wrap", "--png-bits", "--color-space", "--clamp-indirect",
-          "--skip-existing", "--tile", "--samples", "--progress"})
+    for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
+                             "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
+                             "--color-space", "--skip-existing", "--tile", "--samples", "--progress"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 

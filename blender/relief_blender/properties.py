@@ -14,8 +14,8 @@ class ReliefSettings(bpy.types.PropertyGroup):
                               description="No more samples after so many seconds; 0: no limit")
     bounces: IntProperty(name="Bounces", default=4, min=0, max=1000,
                          description="0: only light straight from lights. Glass takes 12 or more")
-    clamp_indirect: FloatProperty(name="Clamp Indirect", default=0.0, min=0.0,
-                                  description="Most that a path adds after its first bounce; 0: all of it")
+    clamp_indirect: FloatProperty(name="Clamp Indirect", default=10.0, min=0.0,
+                                  description="Most that a path adds after its first bounce, which removes specks; 0: all of it")
     pixel_error: FloatProperty(name="Cell Size", default=1.0, min=0.01, max=64.0, subtype="PIXEL",
                                description="Size of the cells of displaced surfaces, in pixels")
     seed: IntProperty(name="Seed", default=0, min=0, description="Of the random numbers")

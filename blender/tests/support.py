@@ -67,7 +67,7 @@ class BlenderTest(unittest.TestCase):
         scene.cycles.pixel_filter_type = "BOX"
         scene.cycles.max_bounces = scene.cycles.diffuse_bounces = scene.cycles.glossy_bounces = 4
         scene.cycles.transparent_max_bounces, scene.cycles.blur_glossy = 8, 0
-        scene.cycles.sample_clamp_indirect = 0
+        scene.cycles.sample_clamp_indirect = scene.relief.clamp_indirect = 0
         scene.relief.samples = scene.cycles.samples = 16
         bpy.context.view_layer.use_pass_z = bpy.context.view_layer.use_pass_position = True
         world = bpy.data.worlds.new("world")

@@ -81,8 +81,9 @@ struct ImageSettings {
     double time_reserved_s = 0; ///< of time_limit_s, for what the caller does before and after the render
     int bounces = 4;            ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
     /// Above 0: light that a path finds after its first bounce, by a ray towards a light or by chance, adds
-    /// no more than this to any component. Less noise, and less light; 0: all of it.
-    float clamp_indirect = 0;
+    /// no more than this to any component. Fewer bright specks, and less light; 0: all of it. The default
+    /// is that of Cycles.
+    float clamp_indirect = 10;
     uint32_t seed = 0;
     /// Linear colour that camera rays see where they leave the scene and meet no visible light; nullopt: the
     /// environment. Black makes films transparent: colours are then premultiplied by A. Bounces see the

@@ -104,7 +104,7 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     length, 4. seed: 0. engine: "cpu" or "vulkan". threads: 0, all cores. layers: names as of `relief render --layers`.
     crop: x0, y0, x1, y1, half open. background: linear (r, g, b) behind the objects, or "transparent".
     noise: no more samples where the error is below this share of the brightness. time_limit: seconds, preparation and
-    denoising included.
+    denoising included. clamp_indirect: the most that one path adds to a colour after its first bounce, 10; 0: no limit.
     level: "auto", or 2^level cells a side of each patch. pixel_error: size of cells aimed at, pixels.
     mode: "direct" or "tessellated". denoise: True, or the library or folder of Open Image Denoise 2. first_sample: of a
     range of samples. check_maps: warn of maps whose values speak against what is said of them; a few hundredths of a second a
