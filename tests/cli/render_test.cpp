@@ -242,6 +242,14 @@ TEST_F(Render, statistics_add_up) {
     for (const auto& [stage, seconds] : s["stage_s"].items()) EXPECT_GE(seconds, 0.0) << stage;
 }
 
+TEST_F(Render, limits_indirect_light_as_cycles_does_unless_told_otherwise) {
+    render_ok("a.exr", {"--stats", "s.json"});
+    EXPECT_EQ(json::parse(read("s.json"))["image"]["clamp_indirect"], 10);
+    render_ok("b.exr", {"--clamp-indirect", "0", "--stats", "s.json"});
+    EXPECT_EQ(json::parse(read("s.json"))["image"]["clamp_indirect"], 0);
+    EXPECT_NE(run({"render", "--help"}).output.find("--clamp-indirect F"), std::string::npos);
+}
+
 TEST_F(Render, the_structure_and_traversal_of_the_options_are_those_that_trace) {
     ASSERT_EQ(run({"scene", "rock", "-o", "rock"}).exit_code, 0);
     const auto trace = [&](const std::vector<std::string>& options) {
