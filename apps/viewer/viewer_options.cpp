@@ -46,7 +46,7 @@ void add_viewer_options(CLI::App& app, ViewerOptions& o) {
     cli::add_engine_options(app, o.engine, o.settings);
     cli::add_mesh_options(app, kMeshGroup, o.input.mesh, o.mesh_only);
     cli::add_map_options(app, o.input.mesh.map, {kMeshGroup, "--preset", "", &o.mesh_only});
-    add("--env", "FILE", "environment; default: a soft sky and a sun", [&o](const std::string& text) {
+    add("--env", "FILE", "environment; default: a studio with a key light", [&o](const std::string& text) {
         o.mesh_only.push_back("--env");
         o.input.mesh.environment = text;
     })->group(kMeshGroup);

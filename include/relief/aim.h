@@ -20,7 +20,8 @@ struct SunDirection {
     friend bool operator==(const SunDirection&, const SunDirection&) = default;
 };
 
-/// A wide plane under the lowest point. `shadow`: one that only catches shadows.
+/// A wide plane under the lowest point, which in the light of load_mesh_scene goes over into its backdrop.
+/// `shadow`: one that only catches shadows.
 enum class Ground { none, plane, shadow };
 
 /// What is to be changed of a scene; all empty: nothing.
@@ -40,11 +41,16 @@ struct AimOptions {
     friend bool operator==(const AimOptions&, const AimOptions&) = default;
 };
 
-/// Applies `options`. `aspect` is width / height of the picture: framed objects take about 85 % of its
-/// height, or of its width. Throws Error{bad_input} for a scene that render() refuses, Error{usage} where the
-/// scene has no environment to change, or nothing to frame. Scans about a quarter of a million samples where
-/// it frames.
+/// Applies `options`. The light of a scene of load_mesh_scene or its like, where nothing has changed it, is
+/// placed for the new camera. `aspect` is width / height of the picture: framed objects take about 85 % of
+/// its height, or of its width. Throws Error{bad_input} for a scene that render() refuses, Error{usage} where
+/// the scene has no environment to change, or nothing to frame. Scans about a quarter of a million samples
+/// where it frames.
 void aim_scene(Scene& scene, const AimOptions& options, float aspect);
+
+/// For a scene whose environment is a copy of that of load_mesh_scene, texel by texel: makes it the original,
+/// which aim_scene places for the camera and matches the ground to.
+void recognize_studio(Scene& scene);
 
 /// The camera after a turn about its up axis through `camera.to`; the environment and lights stay.
 Camera turn_camera(const Camera& camera, float degrees);

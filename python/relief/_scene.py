@@ -137,6 +137,7 @@ class Scene:
         self.lights: list[dict[str, Any]] = []
         self.render: dict[str, Any] = {}
         self.folder = ""
+        self._is_completed = False  # by from_mesh
 
     # Reading and writing
 
@@ -169,7 +170,7 @@ class Scene:
                   subdivision: Optional[Mapping[str, Any]] = None, preset: Optional[str] = None) -> Scene:
         """A mesh with automatic camera and light. displacement: a Displacement, or a map: an array or a name of a file.
         preset: of the program that the map is from, as --preset of the command. environment: a picture of the light (array or
-        name); None: a soft sky and a sun."""
+        name); None: a studio with a key light, a fill and a rim."""
         scene = cls()
         name = None if isinstance(mesh, Mesh) else as_path(mesh, "mesh", "a Mesh, or the name of a file")
         keys: dict[str, Any] = {"file": mesh if name is None else os.path.abspath(name)}
@@ -187,7 +188,11 @@ class Scene:
         parsed.complete()
         said = parsed.describe(len(scene.objects))
         scene.camera = Camera(said["camera"])
-        scene.environment = _fill(Environment(), {**(scene.environment or {}), **said["environment"]})
+        sky = dict(scene.environment or {})
+        if sky.get("file") is None:
+            sky["file"] = parsed.environment_texels()
+            scene._is_completed = True
+        scene.environment = _fill(Environment(), {**sky, **said["environment"]})
         scene.lights = [Light(sun) for sun in said["suns"]]
         if material is None:
             scene.materials["clay"] = Material(said["last_object"]["material"])
@@ -264,12 +269,16 @@ class Scene:
         parsed = self._parse()
         suns = None if light is None else [light] if np.ndim(light) == 1 else list(light)
         parsed.aim({"view": view, "from_": from_, "to": to, "fov": fov, "zoom": zoom, "frame_all": frame_all,
-                    "env_rotate": env_rotate, "env_strength": env_strength, "light": suns, "ground": ground}, aspect)
+                    "env_rotate": env_rotate, "env_strength": env_strength, "light": suns, "ground": ground}, aspect, self._is_completed)
         said = parsed.describe(len(self.objects))
         self.camera = Camera(said["camera"])
         if self.environment is not None:
             for key in ("strength", "rotate_degrees"):
                 self.environment[key] = said["environment"][key]
+        if suns is None and self._is_completed:
+            for light, sun in zip([light for light in self.lights if light.get("type") == "sun"], said["suns"]):
+                if not isinstance(light["direction"], Mapping):  # which has keys
+                    light["direction"] = sun["direction"]
         if suns:
             others = [other for other in self.lights if other.get("type") != "sun"]
             self.lights = others + [Light(sun) for sun in said["suns"]]

@@ -93,10 +93,12 @@ nb::dict describe(const ParsedScene& parsed, size_t known) {
     return node;
 }
 
-void aim(ParsedScene& parsed, const nb::dict& keywords, float aspect) {
+/// `is_completed`: its light may be that of complete().
+void aim(ParsedScene& parsed, const nb::dict& keywords, float aspect, bool is_completed) {
     const AimOptions options = read_aim(keywords);
     const GateVisit visit;
     const nb::gil_scoped_release release;
+    if (is_completed) recognize_studio(parsed.scene);
     aim_scene(parsed.scene, options, aspect);
 }
 
@@ -104,6 +106,13 @@ void complete(ParsedScene& parsed) {
     const GateVisit visit;
     const nb::gil_scoped_release release;
     complete_mesh_scene(parsed.scene);
+}
+
+/// None where the environment has no picture.
+nb::object make_environment_texels(const ParsedScene& parsed) {
+    const std::optional<Environment>& environment = parsed.scene.environment;
+    if (!environment || !environment->texture) return nb::none();
+    return make_texel_array(*environment->texture);
 }
 
 void save(const ParsedScene& parsed, const std::string& folder) {
@@ -167,9 +176,10 @@ std::vector<std::string> find_doubts(const Scene& scene) {
 void add_scenes(nb::module_& module) {
     nb::class_<ParsedScene>(module, "Scene",
                             "A scene that was read whole: from a file, or from text and arrays.")
-        .def("aim", &aim, nb::arg("keywords"), nb::arg("aspect"))
+        .def("aim", &aim, nb::arg("keywords"), nb::arg("aspect"), nb::arg("is_completed"))
         .def("complete", &complete)
         .def("describe", &describe, nb::arg("known"))
+        .def("environment_texels", &make_environment_texels)
         .def("displace", &displace, nb::arg("level"))
         .def("save", &save, nb::arg("folder"))
         .def_prop_ro("picture", &describe_picture)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "base/content_hash.h"
 #include "io/scene/frame_scene.h"
+#include "io/scene/studio.h"
 #include "math/vec.h"
 #include "relief/aim.h"
 #include "relief/error.h"
@@ -117,12 +119,13 @@ template <class Named> std::string name_ground(const std::vector<Named>& others)
     return name;
 }
 
-/// A quad under the lowest point, so wide that its rim is far away.
+/// A quad under the lowest point, whose rim looks near to the horizon. In the studio it is of the colour of
+/// the backdrop there.
 void add_ground(Scene& scene, Ground ground) {
     require_objects(scene);
     const Box box = measure_scene(scene);
     const Vec3f size = box.extent(), middle = box.center();
-    const float radius = 20 * std::max({size.x, size.y, size.z});
+    const float radius = 20 * std::max({size.x, size.y, size.z, length(scene.camera.from - middle)});
     const float below = 1e-4f * std::max({size.x, size.y, size.z}); // samples may miss the lowest point
     Mesh plane;
     plane.name = name_ground(scene.meshes);
@@ -135,6 +138,8 @@ void add_ground(Scene& scene, Ground ground) {
     Material material;
     material.name = name_ground(scene.materials);
     material.base_color = {0.5f, 0.5f, 0.5f}, material.roughness = 0.8f;
+    if (const std::optional<Vec3f> color = match_floor(scene); color && ground == Ground::plane)
+        material.base_color = *color, material.ior = 1; // reflections would show its rim
     Object object;
     object.name = name_ground(scene.objects);
     object.mesh = uint32_t(scene.meshes.size()), object.material = uint32_t(scene.materials.size());
@@ -167,7 +172,9 @@ void aim_scene(Scene& scene, const AimOptions& options, float aspect) {
                             !options.suns.empty() || options.ground != Ground::none;
     if (!is_changed) return;
     validate_scene(scene); // framing follows the indices of the meshes and the uvs into the maps
+    const Camera before = scene.camera;
     aim_camera(scene, options, aspect);
+    turn_studio(scene, before);
     aim_environment(scene, options);
     replace_suns(scene, options.suns);
     if (options.ground != Ground::none) add_ground(scene, options.ground);

@@ -7,6 +7,7 @@
 #include "io/scene/frame_scene.h"
 #include "io/scene/place_sky.h"
 #include "io/scene/scene_content.h"
+#include "io/scene/studio.h"
 #include "math/vec.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -22,19 +23,6 @@ void add_image_light(Scene& scene, std::shared_ptr<const Texture> sky, const Vec
     environment.strength = placement.strength, environment.rotate_degrees = placement.rotate_degrees;
     environment.texture = std::move(sky);
     scene.environment = std::move(environment);
-}
-
-void add_default_light(Scene& scene, const Vec3f& view) {
-    Environment sky;
-    sky.color = {0.25f, 0.28f, 0.33f};
-    scene.environment = sky;
-    const Vec3f left = normalize(cross(view, Vec3f{0, 1, 0}));
-    Light sun;
-    sun.direction = normalize(left * 0.8f + Vec3f{0, 0.9f, 0} + view * 0.55f) * -1.0f;
-    sun.angle_degrees = 3;
-    sun.color = {1.0f, 0.95f, 0.88f};
-    sun.strength = 2.2f;
-    scene.lights.push_back(sun);
 }
 
 void add_map(Scene& scene, const MeshSceneOptions& options, AssetCache& assets) {
@@ -68,8 +56,8 @@ uint64_t compute_hash(const Scene& scene, const MeshSceneOptions& options) {
 void add_clay(Scene& scene) {
     Material clay;
     clay.name = "clay";
-    clay.base_color = {0.75f, 0.55f, 0.45f};
-    clay.roughness = 0.6f;
+    clay.base_color = {0.73f, 0.62f, 0.52f};
+    clay.roughness = 0.5f, clay.specular_weight = 0.7f;
     scene.objects.front().material = uint32_t(scene.materials.size());
     scene.materials.push_back(clay);
 }
@@ -115,7 +103,7 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
     if (!options.displacement_map.empty()) add_map(scene, options, assets);
     const Vec3f view = place_camera(scene);
     if (options.environment.empty()) {
-        add_default_light(scene, view);
+        enter_studio(scene);
     } else {
         add_image_light(scene, assets.load(options.environment.string(), TextureUse::radiance), view);
     }
@@ -136,7 +124,7 @@ void complete_mesh_scene(Scene& scene) {
     if (scene.environment && scene.environment->texture)
         add_image_light(scene, scene.environment->texture, view);
     else
-        add_default_light(scene, view);
+        enter_studio(scene);
 }
 
 Scene make_mesh_scene(Mesh mesh, const Displacement* map) {
@@ -145,7 +133,8 @@ Scene make_mesh_scene(Mesh mesh, const Displacement* map) {
         scene.displacements.push_back(*map);
         scene.objects.front().displacement = 0;
     }
-    add_default_light(scene, place_camera(scene));
+    place_camera(scene);
+    enter_studio(scene);
     validate_scene(scene);
     return scene;
 }

@@ -9,8 +9,10 @@
 
 #include "io/file_system.h"
 #include "io/mesh/mesh_writer.h"
+#include "io/picture/image_coders.h"
 #include "io/scene/keyed_values.h"
 #include "io/scene/scene_values.h"
+#include "io/scene/studio.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -71,13 +73,20 @@ Json write_map_options(const MapOptions& map, const std::string& file) {
     return node;
 }
 
+/// A material without textures.
+Json write_plain_material(const Material& material) {
+    Json node = {{"base_color", to_json(material.base_color)}, {"roughness", to_json(material.roughness)}};
+    if (material.ior != Material().ior) node["ior"] = to_json(material.ior);
+    write_layers(material, node);
+    return node;
+}
+
 /// Sections of a mesh that came alone.
 Json write_mesh_scene(const Scene& scene, const MeshSceneOptions& options, const fs::path& folder) {
     const auto move = [&](const fs::path& file) { return move_path(file.string(), ".", folder); };
     Json root;
     const Material& clay = scene.materials.front();
-    root["materials"][clay.name] = {{"base_color", to_json(clay.base_color)},
-                                    {"roughness", to_json(clay.roughness)}};
+    root["materials"][clay.name] = write_plain_material(clay);
     Json object = {{"name", scene.objects.front().name}, {"mesh", "mesh"}};
     if (!options.displacement_map.empty()) {
         root["displacements"]["map"] = write_map_options(options.map, move(options.displacement_map));
@@ -95,6 +104,19 @@ Json write_mesh_scene(const Scene& scene, const MeshSceneOptions& options, const
     return root;
 }
 
+[[noreturn]] void refuse_other_file(const fs::path& file) {
+    throw Error(ErrorKind::usage, {"another file would be written over", file.string(),
+                                   "move it away, or give the scene another name"});
+}
+
+void keep_inputs(const Scene& scene, const fs::path& file) {
+    std::error_code ignored;
+    for (const Mesh& mesh : scene.meshes)
+        if (fs::equivalent(mesh.source, file, ignored))
+            throw Error(ErrorKind::usage, {"a file that is read would be written over", file.string(),
+                                           "give the scene another name"});
+}
+
 /// A mesh that was not read from a file is written beside the scene.
 void add_ground(const Scene& scene, const fs::path& file, Json& root) {
     const Object& object = scene.objects.back();
@@ -102,25 +124,37 @@ void add_ground(const Scene& scene, const fs::path& file, Json& root) {
     if (!mesh.source.empty()) return;
     const Material& material = scene.materials[object.material];
     const fs::path mesh_file = file.stem().string() + "_" + mesh.name + ".obj";
-    std::error_code ignored;
-    for (const Mesh& other : scene.meshes)
-        if (fs::equivalent(other.source, file.parent_path() / mesh_file, ignored))
-            throw Error(ErrorKind::usage,
-                        {"a file that is read would be written over",
-                         (file.parent_path() / mesh_file).string(), "give the scene another name"});
+    const fs::path written = file.parent_path() / mesh_file;
+    keep_inputs(scene, written);
     const std::string text = format_obj(mesh);
-    if (std::ifstream there(file.parent_path() / mesh_file, std::ios::binary); there)
-        if (std::string(std::istreambuf_iterator<char>(there), {}) != text)
-            throw Error(ErrorKind::usage,
-                        {"another file would be written over", (file.parent_path() / mesh_file).string(),
-                         "move it away, or give the scene another name"});
-    write_text_file(file.parent_path() / mesh_file, text);
-    root["materials"][material.name] = {{"base_color", to_json(material.base_color)},
-                                        {"roughness", to_json(material.roughness)}};
+    if (std::ifstream there(written, std::ios::binary); there)
+        if (std::string(std::istreambuf_iterator<char>(there), {}) != text) refuse_other_file(written);
+    write_text_file(written, text);
+    root["materials"][material.name] = write_plain_material(material);
     root["meshes"][mesh.name]["file"] = mesh_file.string();
     Json node = {{"name", object.name}, {"mesh", mesh.name}, {"material", material.name}};
     if (object.is_shadow_catcher) node["shadow_catcher"] = true;
     root["objects"].push_back(std::move(node));
+}
+
+bool is_studio(const fs::path& file) {
+    try {
+        const Texture there = read_texture(file);
+        return there.stride == get_studio()->stride && there.floats == get_studio()->floats;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// The picture of the studio is written beside the scene.
+void add_studio(const Scene& scene, const fs::path& file, Json& root) {
+    if (!scene.environment || scene.environment->texture != get_studio()) return;
+    const fs::path picture = file.stem().string() + "_studio.exr", written = file.parent_path() / picture;
+    keep_inputs(scene, written);
+    std::error_code ignored;
+    if (fs::exists(written, ignored) && !is_studio(written)) refuse_other_file(written);
+    write_checked(written, [](CheckedFile& stream) { encode_exr(*get_studio(), stream); });
+    root["environment"]["file"] = picture.string();
 }
 
 /// What options may have changed.
@@ -267,6 +301,7 @@ void save_scene_copy(const Scene& scene, const fs::path& input, const MeshSceneO
             if (root.contains(section))
                 move_paths(root[section], input.has_parent_path() ? input.parent_path() : ".", folder);
     }
+    add_studio(scene, file, root);
     update_values(scene, root);
     apply_changes(scene, changes, folder, root);
     if (!scene.objects.empty()) add_ground(scene, file, root);
