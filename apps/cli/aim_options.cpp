@@ -125,7 +125,8 @@ void add_light_options(CLI::App& verb, AimArguments& a) {
         "a sun in place of the scene's; the environment stays. Azimuth from +z to +x, elevation, degrees",
         [&scene](const std::string& text) { scene.suns.push_back(parse_sun(text)); });
     verb.add_flag("--ground", a.ground,
-                  "a floor under the lowest point, without a horizon under a mesh alone; --ground=shadow: only its shadow")
+                  "a floor under the lowest point, without a horizon under a mesh alone; --ground=shadow: "
+                  "only its shadow")
         ->group(kAimGroup)
         ->each([&scene](const std::string& text) { scene.ground = parse_ground(text); });
 }

@@ -117,9 +117,9 @@ struct MeshSceneOptions {
 /// A mesh with automatic camera (from above, front; the object fills about 85 % of the height of a square or
 /// wider picture) and light. A given environment is turned so that most light comes from the camera's left
 /// and above, and its strength is normalised so that a white diffuse surface of the brightest orientation
-/// that the camera can see has radiance 1. Without one a studio lights the mesh: a key light from the camera's
-/// upper left, and an environment that holds a fill from its right, a rim from behind and a soft backdrop.
-/// aim_scene() places the studio for another camera. Throws as load_mesh, load_map and read_image.
+/// that the camera can see has radiance 1. Without one a studio lights the mesh: a key light from the
+/// camera's upper left, and an environment that holds a fill from its right, a rim from behind and a soft
+/// backdrop. aim_scene() places the studio for another camera. Throws as load_mesh, load_map and read_image.
 Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions& options);
 
 /// A mesh in memory, displaced by `map` unless that is null, with automatic camera and light.

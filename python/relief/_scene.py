@@ -264,7 +264,8 @@ class Scene:
         view: front, back, left, right, top or three-quarter. from_, to: (x, y, z). fov: vertical, degrees. zoom: all so
         many times as large as the camera shows it now. env_rotate: degrees. light: suns in place of the scene's, a list of
         (azimuth, elevation), degrees. ground: True, a grey floor below all, or "shadow", a floor that shows the shadows on it
-        and is clear elsewhere: with background="transparent" for compositing. size: of the picture to come."""
+        and is clear elsewhere: with background="transparent" for compositing. size: of the picture to come. The studio that
+        from_mesh chose follows the camera where nothing has changed it, and the floor has no horizon in it."""
         aspect = read_aspect(size)
         parsed = self._parse()
         suns = None if light is None else [light] if np.ndim(light) == 1 else list(light)

@@ -129,9 +129,7 @@ nb::dict describe_material(const Material& material) {
     nb::dict node;
     node["base_color"] = make_list(material.base_color);
     node["specular_roughness"] = material.roughness;
-    const Material plain;
-    if (material.ior != plain.ior) node["specular_ior"] = material.ior;
-    if (material.specular_weight != plain.specular_weight) node["specular_weight"] = material.specular_weight;
+    if (material.ior != Material().ior) node["specular_ior"] = material.ior;
     return node;
 }
 

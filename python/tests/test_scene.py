@@ -152,6 +152,18 @@ class SceneTest(unittest.TestCase):
         rays = np.array([[0.5, 0.5, 3, 0, 0, 0, -1, 9], [1.5, 0.5, 3, 0, 0, 0, -1, 9]], np.float32)
         np.testing.assert_allclose(relief.Intersector(scene).closest_hits(rays).t, [3, 2.5], atol=1e-5)
 
+    def test_the_studio_of_a_mesh_alone_follows_the_camera_until_it_is_changed(self):
+        scene = relief.Scene.from_mesh(scenes.make_plane())
+        front, turn = scene.lights[0]["direction"], scene.environment["rotate_degrees"]
+        scene.aim(view="back", ground=True)
+        back = scene.lights[0]["direction"]
+        self.assertLess(front[0] * back[0] + front[2] * back[2], 0)
+        self.assertNotEqual(scene.environment["rotate_degrees"], turn)
+        self.assertEqual(scene.materials[scene.objects[-1]["material"]]["specular_ior"], 1)
+        scene.lights[0]["direction"] = [1, 0, 0]
+        scene.aim(view="left")
+        self.assertEqual(scene.lights[0]["direction"], [1, 0, 0])
+
     def test_a_matrix_moves_an_object(self):
         scene = relief.Scene.from_mesh(scenes.make_plane())
         matrix = np.array([[2, 0.5, 0, 0], [0, 1, 0, 0], [0, 0, 1, -3], [0, 0, 0, 1]])

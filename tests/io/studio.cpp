@@ -134,7 +134,7 @@ TEST_F(Studio, a_copy_of_a_scene_has_its_picture_beside_it) {
     EXPECT_EQ(read.environment->texture->floats, get_studio()->floats);
     EXPECT_EQ(read.environment->rotate_degrees, scene.environment->rotate_degrees);
     EXPECT_EQ(read.materials[0].base_color, scene.materials[0].base_color);
-    EXPECT_EQ(read.materials[0].specular_weight, scene.materials[0].specular_weight);
+    EXPECT_EQ(read.materials[0].ior, scene.materials[0].ior);
     EXPECT_EQ(read.lights[0].strength, scene.lights[0].strength);
     write("copy_studio.exr", "mine");
     EXPECT_HAS(message_of([&] { save_scene_copy(scene, input, {}, file); }, ErrorKind::usage),

@@ -57,7 +57,7 @@ void add_clay(Scene& scene) {
     Material clay;
     clay.name = "clay";
     clay.base_color = {0.73f, 0.62f, 0.52f};
-    clay.roughness = 0.5f, clay.specular_weight = 0.7f;
+    clay.roughness = 0.5f, clay.ior = 1.4f;
     scene.objects.front().material = uint32_t(scene.materials.size());
     scene.materials.push_back(clay);
 }

@@ -73,11 +73,10 @@ Json write_map_options(const MapOptions& map, const std::string& file) {
     return node;
 }
 
-/// A material without textures.
+/// A material of the library itself: clay, or of the ground.
 Json write_plain_material(const Material& material) {
     Json node = {{"base_color", to_json(material.base_color)}, {"roughness", to_json(material.roughness)}};
     if (material.ior != Material().ior) node["ior"] = to_json(material.ior);
-    write_layers(material, node);
     return node;
 }
 
