@@ -59,7 +59,7 @@ class SceneTest(unittest.TestCase):
         for number in (1, 2, 3):
             values = np.full(shape, number / 8, np.float32)
             relief.Scene.from_mesh(scenes.make_plane(), values).save(self.folder / str(number))
-            os.rename(next((self.folder / str(number)).glob("maps/*.exr")), self.folder / name.format(number))
+            os.rename(self.folder / str(number) / "maps" / "displacement.exr", self.folder / name.format(number))
 
     def expect_saved_frames(self, scene, frames, message=""):
         for frame in frames:
