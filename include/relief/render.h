@@ -176,6 +176,9 @@ class RenderObserver {
     /// Returning true cancels the render: the image so far is returned, and is whole where
     /// RenderResult::whole_samples is above 0.
     virtual bool is_cancelled() const = 0;
+    /// Called a few times a second, from one thread at a time, while the scene is prepared: the part of the
+    /// faces of its meshes that is, in [0, 1].
+    virtual void on_preparation(double fraction) { (void)fraction; }
     /// Called once, before the first ray, with all warnings (Statistics::warnings) known by then.
     virtual void on_warnings(const std::vector<std::string>& warnings) { (void)warnings; }
     /// Seconds between two calls of on_picture; infinity: it is never called. Asked once, before the first

@@ -46,14 +46,17 @@ struct EditReport {
 /// begins (Displacement::dilate). Not thread safe.
 class Session {
   public:
-    /// Copies the maps of the scene. Throws as render(), and Error{usage} for SurfaceMode::tessellated.
-    Session(Scene scene, const RenderSettings& settings, SessionUse use = SessionUse::edits);
+    /// Copies the maps of the scene. Throws as render(), Error{usage} for SurfaceMode::tessellated, and
+    /// Error{failed} where `observer` cancels, which may be null.
+    Session(Scene scene, const RenderSettings& settings, SessionUse use = SessionUse::edits,
+            RenderObserver* observer = nullptr);
     ~Session();
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
 
     /// Renders the next picture. Its `prepare_s` covers the work since the last one: construction, or edits.
-    /// Rays, trees and stage times accumulate over the session. Throws as relief::render().
+    /// Rays, trees and stage times accumulate over the session. Throws as relief::render(), and Error{failed}
+    /// where the observer cancels while trees that a change has cost are built.
     RenderResult render(RenderObserver* observer = nullptr);
 
     /// Replaces texels in all displacements that share the image. Throws Error{bad_input}, and changes
@@ -65,15 +68,20 @@ class Session {
     /// traversal keeps its trees; others are made anew. `image` may differ from that of the session in all
     /// but its layers; `scene_hash` names what it shows as Scene::hash does, 0: made of the old one and the
     /// camera. Throws as render(), and Error{usage} for other layers; nothing changes then, but that an
-    /// engine which failed is made anew by the next call. The picture is that of a fresh session bit for bit;
-    /// where is_far_away(), up to rounding.
-    void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash = 0);
+    /// engine which failed is made anew by the next call. Error{failed} where `observer` cancels: another
+    /// change has to come then. The picture is that of a fresh session bit for bit; where is_far_away(), up
+    /// to rounding.
+    void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash = 0,
+                     RenderObserver* observer = nullptr);
 
     /// The next picture is of the scene at another time; of a session for `scenes`. What has not changed
-    /// stays prepared, on the CPU engine's default traversal with its trees. `image` as for change_view(), as
-    /// is what the picture is bit for bit. Throws as render(), Error{usage} for another use; after other
-    /// errors the session is of no use.
-    void change_scene(SceneUpdate update, const ImageSettings& image);
+    /// stays prepared, on the CPU engine's default traversal with its trees; meshes, displacements and
+    /// materials are known by their names. `image` as for change_view(), as is what the picture is bit for
+    /// bit. Throws as render(), Error{usage} for another use, Error{failed} where `observer` cancels before
+    /// the scene is there. After an error of the scene or a cancel the session keeps what it had prepared,
+    /// and "as before" goes on to mean the scene before; it has no picture until another call, with
+    /// SceneUpdate::scene, has succeeded.
+    void change_scene(SceneUpdate update, const ImageSettings& image, RenderObserver* observer = nullptr);
 
     /// Renders a picture with motion blur: all rays of sample k see the scene at
     /// find_sample_time(camera, frame, k), so that the picture is the mean of still ones at these times, bit
@@ -85,6 +93,10 @@ class Session {
 
     /// Some object lies so far from the world's origin that places may be taken relative to the first camera.
     bool is_far_away() const;
+
+    /// Surfaces that have been made from meshes so far: objects that share a mesh and a displacement share
+    /// one, and what a change keeps is not made again.
+    uint64_t made_surfaces() const;
 
     /// Throws what edit() would throw; changes nothing.
     void check(const MapEdit& edit) const;

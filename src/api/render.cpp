@@ -1,7 +1,6 @@
 // The whole pipeline: scene -> surfaces and levels -> trees -> rays -> film -> image.
 #include "relief/render.h"
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -11,6 +10,7 @@
 #include "api/join_parts.h"
 #include "api/make_engine.h"
 #include "api/picture_report.h"
+#include "api/prepare_scope.h"
 #include "base/machine.h"
 #include "base/parallel.h"
 #include "base/stop_request.h"
@@ -29,9 +29,8 @@ struct Stage {
 };
 
 /// None where the observer cancels meanwhile.
-std::optional<Stage> set_up(Scene&& scene, const RenderSettings& settings, const RenderObserver* observer) {
-    const StopScope scope(observer ? [observer] { return observer->is_cancelled(); }
-                                   : std::function<bool()>());
+std::optional<Stage> set_up(Scene&& scene, const RenderSettings& settings, RenderObserver* observer) {
+    const PrepareScope scope(observer);
     try {
         Stage stage{prepare_scene(std::move(scene), settings, SceneOrigin::camera), nullptr};
         stage.engine = make_engine(stage.scene, settings);

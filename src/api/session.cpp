@@ -16,8 +16,10 @@
 #include "api/motion_vectors.h"
 #include "api/moving_picture.h"
 #include "api/picture_report.h"
+#include "api/prepare_scope.h"
 #include "base/machine.h"
 #include "base/parallel.h"
+#include "base/stop_request.h"
 #include "base/timer.h"
 #include "prepare/scene_edit.h"
 #include "prepare/validate_settings.h"
@@ -35,20 +37,32 @@ struct Session::Implementation {
     std::unique_ptr<Engine> engine;
     SessionCounts counts;
     std::unique_ptr<Film> film; ///< the last picture; null: none that the engine could update
-    bool is_lost = false;       ///< a change of the scene has failed
+    /// What the scene waits for after a change that failed or was cancelled.
+    enum class Missing { nothing, view, scene } missing = Missing::nothing;
 
-    Implementation(Scene scene, const RenderSettings& given, SessionUse session_use)
+    Implementation(Scene scene, const RenderSettings& given, SessionUse session_use, RenderObserver* observer)
         : layers(given.image.layers), use(session_use) {
         validate_settings(given);
         settings = complete_settings(given, has_shadow_catchers(scene));
         validate_method(settings, scene.camera);
         const Timer timer;
         mattes = make_instance_mattes(scene, settings.image.layers);
-        with_threads(settings.device.threads, [&] {
+        prepare(observer, [&] {
             editor = std::make_unique<SceneEditor>(std::move(scene), settings, use);
             start_engine();
         });
         prepare_s = timer.seconds();
+    }
+
+    /// On the session's threads.
+    template <class Work> void prepare(RenderObserver* observer, const Work& work) {
+        const PrepareScope scope(observer);
+        try {
+            with_threads(settings.device.threads, work);
+        } catch (const StopRequest&) {
+            film.reset(), engine.reset();
+            throw Error(ErrorKind::failed, {"the preparation of the scene was cancelled", "session", ""});
+        }
     }
 
     void start_engine() {
@@ -58,14 +72,37 @@ struct Session::Implementation {
         if (use == SessionUse::edits) engine->expect_changes();
     }
 
+    /// The scene has changed; where the observer cancels now, the next picture has to wait for the engine.
+    void restart_engine() {
+        try {
+            start_engine();
+        } catch (const StopRequest&) {
+            engine.reset();
+        }
+    }
+
+    /// Whether the engine follows a change; one that was cancelled on the way is let go.
+    template <class Change> bool follow(const Change& change) {
+        try {
+            return engine && change();
+        } catch (const StopRequest&) {
+            engine.reset();
+            return false;
+        }
+    }
+
     /// One that could not be made, or was lost, is made again.
     void need_engine() {
+        if (missing != Missing::nothing)
+            throw Error(ErrorKind::usage,
+                        {"the last change of the scene has failed", "session",
+                         missing == Missing::view ? "call change_view() or change_scene()"
+                                                  : "call change_scene() with a whole scene"});
         if (!engine) start_engine();
     }
 
     /// Retraces what changed since the last picture and keeps the rest.
     bool trace_picture(const PictureSpace& space, RenderObserver* observer) {
-        need_engine();
         RenderControl control(observer);
         control.spent_s = prepare_s;
         if (film) {
@@ -95,19 +132,25 @@ struct Session::Implementation {
     void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
         const Timer timer;
         const RenderSettings changed = check_image(image, camera, editor->scene()->has_shadow_catchers);
-        need_engine();
+        if (missing != Missing::view) need_engine();
         settings = changed;
         film.reset();
-        if (!show_view(camera, settings, scene_hash)) start_engine();
+        if (!move_view(camera, settings, scene_hash)) restart_engine();
         prepare_s += timer.seconds();
     }
 
-    /// False: the engine does not follow.
-    bool show_view(const Camera& camera, const RenderSettings& changed, uint64_t scene_hash) {
+    /// False: there is no engine that follows.
+    bool move_view(const Camera& camera, const RenderSettings& changed, uint64_t scene_hash) {
+        const Missing before = std::exchange(missing, Missing::view);
         const std::vector<SurfaceChange> changes = editor->change_view(camera, changed, scene_hash);
+        missing = Missing::nothing;
+        return before == Missing::nothing &&
+               follow([&] { return show_changes(changes, changed.image); });
+    }
+
+    bool show_changes(const std::vector<SurfaceChange>& changes, const ImageSettings& image) {
         const bool is_replaced = std::ranges::any_of(changes, &SurfaceChange::is_replaced);
-        return is_replaced ? engine->change_scene(changes, changed.image)
-                           : engine->change_view(changes, changed.image);
+        return is_replaced ? engine->change_scene(changes, image) : engine->change_view(changes, image);
     }
 
     void change_scene(SceneUpdate update, const ImageSettings& image) {
@@ -118,7 +161,7 @@ struct Session::Implementation {
                                             : editor->scene()->has_shadow_catchers);
         film.reset();
         if (update.scene) mattes = make_instance_mattes(*update.scene, settings.image.layers);
-        if (!move(std::move(update), settings.image)) start_engine();
+        if (!move(std::move(update), settings.image)) restart_engine();
         prepare_s += timer.seconds();
     }
 
@@ -126,22 +169,23 @@ struct Session::Implementation {
         if (use != SessionUse::scenes)
             throw Error(ErrorKind::usage,
                         {"the session is not one whose scene changes", "session", "SessionUse::scenes"});
-        if (is_lost)
-            throw Error(ErrorKind::usage, {"an error has ended the session", "session", "begin another"});
     }
 
-    /// Puts the scene at another time in place. False: the engine does not follow.
+    /// Puts the scene at another time in place. False: there is no engine that follows.
     bool move(SceneUpdate update, const ImageSettings& image) {
-        need_engine();
         RenderSettings changed = settings;
         changed.image = image;
-        if (!update.scene) return show_view(update.camera, changed, update.scene_hash);
-        is_lost = true;
+        if (!update.scene) {
+            if (missing == Missing::scene) need_engine();
+            return move_view(update.camera, changed, update.scene_hash);
+        }
+        if (missing != Missing::nothing) engine.reset();
+        missing = Missing::scene;
         update.scene->hash = update.scene_hash;
         const std::optional<std::vector<SurfaceChange>> changes =
             editor->change_scene(std::move(*update.scene), changed);
-        is_lost = false;
-        return changes && engine->change_scene(*changes, image);
+        missing = Missing::nothing;
+        return changes && follow([&] { return engine->change_scene(*changes, image); });
     }
 
     /// One picture names each object once.
@@ -177,7 +221,7 @@ struct Session::Implementation {
 
     void put_sample(SceneUpdate update, const ImageSettings& image) {
         if (move(std::move(update), image)) return;
-        keep_counts(*engine, counts);
+        if (engine) keep_counts(*engine, counts);
         engine.reset(); // so that a device does not hold two
         RenderSettings changed = settings;
         changed.image = image;
@@ -276,8 +320,8 @@ double find_sample_time(const Camera& camera, double frame, int sample) {
     return frame + open + (close - open) * share;
 }
 
-Session::Session(Scene scene, const RenderSettings& settings, SessionUse use)
-    : implementation_(std::make_unique<Implementation>(std::move(scene), settings, use)) {}
+Session::Session(Scene scene, const RenderSettings& settings, SessionUse use, RenderObserver* observer)
+    : implementation_(std::make_unique<Implementation>(std::move(scene), settings, use, observer)) {}
 
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
@@ -308,6 +352,7 @@ RenderResult Session::Implementation::show(RenderObserver* observer, const Trace
 }
 
 RenderResult Session::render(RenderObserver* observer) {
+    implementation_->prepare(observer, [&] { implementation_->need_engine(); });
     return implementation_->show(
         observer, [&](const PictureSpace& space) { return implementation_->trace_picture(space, observer); });
 }
@@ -322,9 +367,8 @@ RenderResult Session::render_moving(double frame, const UpdateScene& update, Ren
     return result;
 }
 
-void Session::change_scene(SceneUpdate update, const ImageSettings& image) {
-    with_threads(implementation_->settings.device.threads,
-                 [&] { implementation_->change_scene(std::move(update), image); });
+void Session::change_scene(SceneUpdate update, const ImageSettings& image, RenderObserver* observer) {
+    implementation_->prepare(observer, [&] { implementation_->change_scene(std::move(update), image); });
 }
 
 EditReport Session::edit(const MapEdit& edit) {
@@ -333,12 +377,14 @@ EditReport Session::edit(const MapEdit& edit) {
     return report;
 }
 
-void Session::change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash) {
-    with_threads(implementation_->settings.device.threads,
-                 [&] { implementation_->change_view(camera, image, scene_hash); });
+void Session::change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash,
+                          RenderObserver* observer) {
+    implementation_->prepare(observer, [&] { implementation_->change_view(camera, image, scene_hash); });
 }
 
 bool Session::is_far_away() const { return implementation_->editor->scene()->has_far_objects; }
+
+uint64_t Session::made_surfaces() const { return implementation_->editor->made_surfaces(); }
 
 void Session::check(const MapEdit& edit) const {
     with_threads(implementation_->settings.device.threads, [&] { implementation_->editor->check(edit); });

@@ -53,17 +53,16 @@ class BodyScope {
 };
 
 /// Of the StopScope that the calling thread works in; null: none.
-thread_local const std::function<bool()>* is_stop_asked_for = nullptr;
+thread_local const StopScope::Work* current_work = nullptr;
 
 /// A body runs in the scope of its loop, whatever thread it is on.
 class InheritedStop {
   public:
-    explicit InheritedStop(const std::function<bool()>* of_loop)
-        : before_(std::exchange(is_stop_asked_for, of_loop)) {}
-    ~InheritedStop() { is_stop_asked_for = before_; }
+    explicit InheritedStop(const StopScope::Work* of_loop) : before_(std::exchange(current_work, of_loop)) {}
+    ~InheritedStop() { current_work = before_; }
 
   private:
-    const std::function<bool()>* before_;
+    const StopScope::Work* before_;
 };
 
 /// Completes the ordering also when a body throws.
@@ -75,11 +74,16 @@ class LoopScope {
 
 } // namespace
 
-StopScope::StopScope(std::function<bool()> is_asked_for)
-    : is_asked_for_(std::move(is_asked_for)),
-      outer_(std::exchange(is_stop_asked_for, is_asked_for_ ? &is_asked_for_ : nullptr)) {}
+StopScope::StopScope(std::function<bool()> is_asked_for, ProgressFunction progress)
+    : work_{std::move(is_asked_for), std::move(progress)}, outer_(std::exchange(current_work, &work_)) {}
 
-StopScope::~StopScope() { is_stop_asked_for = outer_; }
+StopScope::~StopScope() { current_work = outer_; }
+
+void stop_if_asked() {
+    if (current_work && current_work->is_asked_for && current_work->is_asked_for()) throw StopRequest();
+}
+
+ProgressFunction find_progress() { return current_work ? current_work->progress : ProgressFunction(); }
 
 void parallel_for(const char* name, size_t count, size_t grain,
                   const std::function<void(size_t, size_t)>& body) {
@@ -87,13 +91,13 @@ void parallel_for(const char* name, size_t count, size_t grain,
     tbb::profiling::event trace(name);
     LoopScope loop;
     grain = std::max<size_t>(grain, 1);
-    const std::function<bool()>* const is_asked_for = is_stop_asked_for;
+    const StopScope::Work* const work = current_work;
     tbb::parallel_for(
         tbb::blocked_range<size_t>(0, count / grain + (count % grain != 0), 1),
         [&](const tbb::blocked_range<size_t>& range) {
             BodyScope scope(loop.order);
-            const InheritedStop stop(is_asked_for);
-            if (is_asked_for && (*is_asked_for)()) throw StopRequest();
+            const InheritedStop stop(work);
+            stop_if_asked();
             const size_t begin = range.begin() * grain;
             body(begin, begin + std::min(grain, count - begin));
         },
@@ -111,10 +115,10 @@ int thread_count() { return tbb::this_task_arena::max_concurrency(); }
 void with_threads(int threads, const std::function<void()>& body) {
     tbb::task_arena arena(threads > 0 ? threads : tbb::info::default_concurrency());
     LoopScope loop;
-    const std::function<bool()>* const is_asked_for = is_stop_asked_for;
+    const StopScope::Work* const work = current_work;
     arena.execute([&] {
         BodyScope scope(loop.order);
-        const InheritedStop stop(is_asked_for);
+        const InheritedStop stop(work);
         body();
     });
 }

@@ -122,15 +122,17 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
     prepared.has_shadow_catchers = has_shadow_catchers(scene);
     parts.taken_off = move_meshes_to_origin(scene, same.meshes);
     for (size_t k = 0; k < same.meshes.size(); ++k)
-        if (same.meshes[k]) parts.taken_off[k] = before->taken_off[k];
+        if (same.meshes[k]) parts.taken_off[k] = before->taken_off[same.old_meshes[k]];
+    parts.surfaces = list.numbers, parts.has_old_numbers = same.has_old_numbers();
     prepare_maps(scene, same, before, parts.prepared);
     std::vector<SurfaceChange> changes = make_surfaces(scene, list, same, before, polygons, parts);
     if (polygons == Polygonal::keep_for_views) keep_conventions(scene, parts);
+    parts.made_surfaces = (before ? before->made_surfaces : 0) +
+                          uint64_t(std::ranges::count_if(changes, &SurfaceChange::is_replaced));
     share_mips(scene, list.numbers, prepared);
     add_tangents(prepared);
     if (before) prepared.origin = before->prepared.scene->origin;
     place_instances(scene, parts.taken_off, before ? SceneOrigin::given : origin, prepared);
-    parts.surfaces = list.numbers;
     if (polygons != Polygonal::free) parts.meshes = std::move(scene.meshes);
     return changes;
 }
@@ -212,32 +214,51 @@ SceneParts prepare_scene_parts(Scene scene, const RenderSettings& settings, Scen
     return parts;
 }
 
-std::optional<std::vector<SurfaceChange>> prepare_next_scene(Scene scene, const RenderSettings& settings,
-                                                             SceneParts& parts) {
-    SceneParts next;
-    next.prepared.scene = std::make_shared<PreparedScene>();
-    const size_t surface_count = parts.prepared.scene->surfaces.size();
+namespace {
+
+/// As prepare_next_scene(); after an error parts of `before` may be in `scene` and `next`.
+std::optional<std::vector<SurfaceChange>> prepare_beside(Scene& scene, const RenderSettings& settings,
+                                                         SceneParts& before, SceneParts& next) {
+    const size_t surface_count = before.prepared.scene->surfaces.size();
     std::vector<std::vector<uint32_t>> mips;
-    for (Surface& surface : parts.prepared.scene->surfaces) mips.push_back(surface.mips);
+    for (Surface& surface : before.prepared.scene->surfaces) mips.push_back(surface.mips);
     std::vector<SurfaceChange> changes =
-        prepare_parts(scene, settings, SceneOrigin::given, &parts, Polygonal::keep, next);
+        prepare_parts(scene, settings, SceneOrigin::given, &before, Polygonal::keep, next);
     PreparedScene& prepared = *next.prepared.scene;
     const bool has_same_surfaces =
-        next.surfaces == parts.surfaces && prepared.surfaces.size() == surface_count;
-    if (has_same_surfaces) take_over_lines(parts.prepared.scene->instances, changes, prepared);
+        next.has_old_numbers && next.surfaces == before.surfaces && prepared.surfaces.size() == surface_count;
+    if (has_same_surfaces) take_over_lines(before.prepared.scene->instances, changes, prepared);
     finish_levels(settings, prepared, ViewsToCome::many);
     if (has_same_surfaces) mark_other_mips(mips, prepared, changes);
     add_space_warnings(prepared);
-    // In place, since engines refer to it.
-    std::shared_ptr<PreparedScene> place = std::move(parts.prepared.scene);
-    *place = std::move(prepared);
-    next.prepared.scene = std::move(place);
-    parts = std::move(next);
     if (!has_same_surfaces) return std::nullopt;
     std::erase_if(changes, [](const SurfaceChange& change) {
         return !change.is_replaced && std::ranges::find(change.is_changed, 1) == change.is_changed.end();
     });
     for (SurfaceChange& change : changes) change.looks_different = change.is_changed;
+    return changes;
+}
+
+} // namespace
+
+std::optional<std::vector<SurfaceChange>> prepare_next_scene(Scene scene, const RenderSettings& settings,
+                                                             SceneParts& parts) {
+    SceneParts next;
+    next.prepared.scene = std::make_shared<PreparedScene>();
+    std::optional<std::vector<SurfaceChange>> changes;
+    try {
+        changes = prepare_beside(scene, settings, parts, next);
+    } catch (...) {
+        give_back(scene, next, parts);
+        PreparedScene &made = *next.prepared.scene, &kept = *parts.prepared.scene;
+        if (kept.materials.empty()) take_over_materials(made, kept);
+        throw;
+    }
+    // In place, since engines refer to it.
+    std::shared_ptr<PreparedScene> place = std::move(parts.prepared.scene);
+    *place = std::move(*next.prepared.scene);
+    next.prepared.scene = std::move(place);
+    parts = std::move(next);
     return changes;
 }
 

@@ -36,6 +36,8 @@ class SceneEditor {
     std::shared_ptr<const PreparedScene> scene() const { return scene_; }
     /// Of the scene and all edits since: names what a picture shows.
     uint64_t scene_hash() const { return hash_; }
+    /// Surfaces that have been made from meshes so far.
+    uint64_t made_surfaces() const { return parts_.made_surfaces; }
 
     /// Throws Error{bad_input} for an edit that does not fit. The result refers to `edit`.
     CheckedEdit check(const MapEdit& edit) const;

@@ -112,7 +112,7 @@ void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before,
         Displacement& displacement = scene.displacements[k];
         const std::vector<const Mesh*> meshes = list_meshes(scene, k);
         if (same.images[k])
-            take_over(*before, k, displacement.tiles, prepared);
+            take_over(*before, same.old_displacements[k], displacement.tiles, prepared);
         else
             for (MapTile& tile : displacement.tiles)
                 prepare_map(displacement, tile, meshes, splines, prepared);

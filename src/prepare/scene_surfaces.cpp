@@ -1,10 +1,13 @@
 #include "prepare/scene_surfaces.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/progress.h"
+#include "base/stop_request.h"
 #include "math/affine.h"
 #include "scene/uv_sets.h"
 #include "surface/map/displacement_map.h"
@@ -102,18 +105,18 @@ class SurfaceMaker {
 
   private:
     /// The surface of a key before, if nothing but its map may differ.
-    std::optional<Surface> take(const SurfaceKey& key, const SurfaceRecipe& recipe) const {
+    std::optional<Surface> take(const SurfaceKey& key, SurfaceRecipe& recipe) const {
         const auto [mesh, displacement, object] = key;
         if (!before_ || !same_.meshes[mesh] || (displacement != kNoIndex && !same_.bases[displacement]))
             return std::nullopt;
-        const auto found = before_->surfaces.find(key);
+        const auto found = before_->surfaces.find(same_.find_old(key));
         if (found == before_->surfaces.end()) return std::nullopt;
         Surface& surface = before_->prepared.scene->surfaces[found->second];
-        if (!has_uv_sets(surface, scene_.meshes[mesh], recipe.uv_sets)) return std::nullopt;
-        if (is_subdivided_by_view(scene_.meshes[mesh]) &&
-            !is_same_base(before_->recipes[found->second].tolerance, recipe.tolerance, surface.base_reserve))
-            return std::nullopt;
-        return std::move(surface);
+        if (surface.patch_count() == 0 || !has_uv_sets(surface, scene_.meshes[mesh], recipe.uv_sets)) return std::nullopt;
+        const BaseTolerance& made_with = before_->recipes[found->second].tolerance;
+        if (!is_same_base(made_with, recipe.tolerance, surface.base_reserve)) return std::nullopt;
+        recipe.tolerance = made_with;
+        return std::exchange(surface, Surface{});
     }
 
     void choose_tolerance(const Displacement* displacement, SurfaceRecipe& recipe) {
@@ -160,7 +163,7 @@ std::vector<SurfaceRecipe> make_recipes(const Scene& scene, const SurfaceList& l
 }
 
 /// With the map of the surface before, which may have been edited.
-Surface remake_surface(const SceneParts& parts, const SurfaceRecipe& recipe, Surface& before) {
+Surface remake_surface(const SceneParts& parts, const SurfaceRecipe& recipe, const Surface& before) {
     const Mesh& mesh = parts.meshes[recipe.mesh];
     PyramidCache pyramids;
     if (recipe.displacement == kNoIndex) return make_surface(mesh, nullptr, make_context(recipe, pyramids));
@@ -204,6 +207,10 @@ std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, 
     surfaces.resize(list.numbers.size());
     parts.recipes = make_recipes(scene, list, parts.taken_off);
     SurfaceMaker maker(scene, same, before, parts.prepared.scene->levels, parts.recipes);
+    std::vector<uint64_t> face_counts;
+    for (const Mesh& mesh : scene.meshes) face_counts.push_back(mesh.face_sizes.size());
+    ProgressCounter progress(find_progress(),
+                             std::accumulate(face_counts.begin(), face_counts.end(), uint64_t(0)));
     parallel_for("make_surfaces", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
         for (size_t mesh = begin; mesh < end; ++mesh) {
             for (const SurfaceKey& key : keys_of_mesh[mesh]) {
@@ -214,6 +221,7 @@ std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, 
             const bool is_kept = polygons == Polygonal::keep || (polygons == Polygonal::keep_for_views &&
                                                                  is_subdivided_by_view(scene.meshes[mesh]));
             if (!is_kept) release_mesh(scene, uint32_t(mesh));
+            progress.add(face_counts[mesh]);
         }
     });
     return changes;
@@ -221,23 +229,28 @@ std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, 
 
 std::vector<uint32_t> follow_view(SceneParts& parts, const LevelFieldConfig& config) {
     std::vector<Surface>& surfaces = parts.prepared.scene->surfaces;
-    std::vector<uint32_t> remade;
+    std::vector<uint32_t> numbers;
+    std::vector<SurfaceRecipe> recipes;
     for (uint32_t k = 0; k < surfaces.size(); ++k) {
-        SurfaceRecipe& recipe = parts.recipes[k];
+        SurfaceRecipe recipe = parts.recipes[k];
         const Mesh& mesh = parts.meshes[recipe.mesh];
         if (!is_subdivided_by_view(mesh)) continue;
         BaseTolerance tolerance = choose_base_tolerance(mesh, recipe.places, recipe.reach, config);
         if (is_same_base(recipe.tolerance, tolerance, surfaces[k].base_reserve)) continue;
         recipe.tolerance = std::move(tolerance);
-        remade.push_back(k);
+        numbers.push_back(k), recipes.push_back(std::move(recipe));
     }
-    parallel_for("surfaces of another view", remade.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) {
-            Surface& surface = surfaces[remade[k]];
-            surface = remake_surface(parts, parts.recipes[remade[k]], surface);
-        }
+    std::vector<Surface> made(numbers.size());
+    parallel_for("surfaces of another view", numbers.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) made[k] = remake_surface(parts, recipes[k], surfaces[numbers[k]]);
     });
-    return remade;
+    // All at the end, so that an error changes nothing.
+    for (size_t k = 0; k < numbers.size(); ++k) {
+        surfaces[numbers[k]] = std::move(made[k]);
+        parts.recipes[numbers[k]] = std::move(recipes[k]);
+    }
+    parts.made_surfaces += numbers.size();
+    return numbers;
 }
 
 } // namespace relief

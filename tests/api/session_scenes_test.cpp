@@ -14,38 +14,7 @@
 namespace relief {
 namespace {
 
-using test::make_rough_torus, test::make_session_settings;
-
-/// The scene without meshes, which are as they were.
-SceneUpdate leave_out_meshes(Scene scene) {
-    for (Mesh& mesh : scene.meshes) {
-        Mesh empty;
-        empty.name = mesh.name;
-        mesh = std::move(empty);
-    }
-    const Camera camera = scene.camera;
-    return {std::move(scene), camera, 7};
-}
-
-/// Two bodies, one of them a mirror image that glows, over a plain one, in light of an environment and a sun.
-Scene make_session_scene() {
-    Scene scene = make_rough_torus();
-    Material glowing;
-    glowing.emission = {0.5f, 0.4f, 0.3f}, glowing.coat_weight = 0.5f;
-    scene.materials.push_back(glowing);
-    Object second = scene.objects[0];
-    second.material = uint32_t(scene.materials.size() - 1);
-    second.world_from_object.rows[0] = second.world_from_object.rows[0] * -1.0f;
-    second.world_from_object.translation = {0, 1.5f, 0};
-    scene.objects.push_back(second);
-    Object plain = scene.objects[0];
-    plain.displacement = kNoIndex, plain.world_from_object.translation = {0, -1.5f, 0};
-    scene.objects.push_back(plain);
-    scene.lights.push_back({});
-    scene.lights.back().direction = {-1, -2, -1};
-    for (size_t k = 0; k < scene.meshes.size(); ++k) scene.meshes[k].name = "mesh " + std::to_string(k);
-    return scene;
-}
+using test::leave_out_meshes, test::make_session_scene, test::make_session_settings;
 
 std::shared_ptr<const Texture> scale_texels(const Texture& texture, float factor) {
     auto other = std::make_shared<Texture>(texture);
@@ -159,7 +128,9 @@ TEST(SessionScenes, refuses_what_it_cannot_follow) {
     SceneUpdate unknown = leave_out_meshes(scene);
     unknown.scene->meshes[0].name = "another";
     EXPECT_THROW(session.change_scene(unknown, settings.image), Error);
-    EXPECT_THROW(session.change_scene({scene, scene.camera, 7}, settings.image), Error) << "it is of no use";
+    EXPECT_THROW(session.render(), Error) << "it shows no scene";
+    session.change_scene(leave_out_meshes(scene), settings.image);
+    EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
 }
 
 } // namespace

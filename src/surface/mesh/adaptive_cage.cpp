@@ -121,6 +121,7 @@ struct Wishes {
     bool splits_u = false, splits_v = false;       ///< its edges along that direction
     bool splits_fit = false;                       ///< the fitted patch is too far away
     std::unique_ptr<std::array<Vec3d, 12>> fitted; ///< null: no fit was needed
+    bool depends_on_tolerance = false; ///< another tolerance might choose another fit
     double part = 0; ///< of the tolerance that the errors come to, also where no smaller quads are allowed
 };
 
@@ -261,6 +262,7 @@ class AdaptiveCage {
             cage_.is_accurate[quad] = 1;
             if (wishes.fitted) cage_.fits[quad] = uint32_t(fitted_.size()), fitted_.push_back(*wishes.fitted);
             largest_part_ = std::max(largest_part_, wishes.part);
+            is_cut_ = is_cut_ || wishes.depends_on_tolerance;
             return;
         }
         // Towards creases that wear off, else towards irregular points, else in both directions.
@@ -339,7 +341,7 @@ class AdaptiveCage {
         Wishes others;
         const PatchError nearest = fit_nearest(refined, quad, limits, bend, others);
         if (nearest.off + nearest.change >= error.off + error.change) return error;
-        wishes.fitted = std::move(others.fitted);
+        wishes.fitted = std::move(others.fitted), wishes.depends_on_tolerance = true;
         return nearest;
     }
 
