@@ -54,7 +54,13 @@ struct SceneAssets {
     std::map<std::string, Mesh>
         meshes; ///< with their normals, tangents and creases; each for one mesh of the text
     std::map<std::string, std::shared_ptr<const Texture>> textures; ///< as read_texture reads them
+    /// Names of meshes of the text that are left out of the scene, as SceneUpdate::scene may have them, and
+    /// their hash_mesh().
+    std::map<std::string, uint64_t> kept_meshes;
 };
+
+/// The share of a mesh in Scene::hash.
+uint64_t hash_mesh(const Mesh& mesh);
 
 /// Reads the text of a scene file. A name of a mesh or picture that is in `assets` stands for what is there;
 /// other names are files, relative to `folder`. `frame`: of values with keys and of files with `####`, as

@@ -34,6 +34,11 @@ class Shot {
     Shot(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
          const MeshReaderSettings& reader = {});
     ~Shot();
+
+    /// Goes on with another text, which may leave out meshes. Pictures that were read stay read, unless their
+    /// files have changed or `assets` has another texture under their name. Throws as the constructor, and
+    /// changes nothing then.
+    void change_text(std::string_view text, SceneAssets assets);
     Shot(Shot&&) noexcept;
     Shot& operator=(Shot&&) noexcept;
 

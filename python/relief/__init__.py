@@ -7,7 +7,7 @@
     relief.render(scene, size=(640, 360), spp=16).save("waves.png")
 
 Scene, Mesh, Displacement, Material, Camera, Light, Environment: what is rendered, with the keys of scene files.
-render, Session, Picture: pictures, at once or while maps are painted.
+render, Session, LiveScene, Picture: pictures, at once, while maps are painted, or while all of a scene changes.
 Intersector, Hits: batches of rays. trees: structures and traversals to compare.
 parse_frames, name_frame: shots, frame by frame. Error: what all of these raise.
 inspect, convert: what maps and meshes are; maps in other conventions.
@@ -15,6 +15,7 @@ inspect, convert: what maps and meshes are; maps in other conventions.
 Lengths are scene units, y is up, angles degrees, colours linear Rec.709."""
 from . import trees
 from ._errors import Error
+from ._live import LiveScene
 from ._mesh import Mesh
 from ._parts import Camera, Displacement, Environment, Light, Material
 from ._picture import Picture
@@ -25,6 +26,6 @@ from ._render import Session, render
 from ._scene import Scene
 from ._tools import convert, devices, inspect, isas, name_frame, parse_frames
 
-__all__ = ["Camera", "Displacement", "Environment", "Error", "Hits", "Intersector", "Light", "Material", "Mesh", "NOTHING",
+__all__ = ["Camera", "Displacement", "Environment", "Error", "Hits", "Intersector", "Light", "LiveScene", "Material", "Mesh", "NOTHING",
            "Picture", "Progress", "Scene", "Session", "__version__", "convert", "devices", "inspect", "isas",
            "name_frame", "parse_frames", "render", "trees"]

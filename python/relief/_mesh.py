@@ -133,8 +133,20 @@ class Mesh:
             hint = f"; of points they are {name}[faces.ravel()]" if len(counted) == len(self.positions) else ""
             raise ValueError(f"{label}: {len(counted)}, and there are {len(self.corners)} corners of faces{hint}")
 
+    _has_let_go = False
+
+    def _let_go(self) -> None:
+        """Lets go of the arrays, for a scene that knows the mesh."""
+        self.positions, self.sizes, self.corners = np.zeros((0, 3), np.float32), np.zeros(0, np.uint32), np.zeros(0, np.uint32)
+        for name in ("uvs", "uv_indices", "normals", "normal_indices", "tangents", "creases", "sharpness"):
+            setattr(self, name, None)
+        self.further_uvs = {}
+        self._has_let_go = True
+
     def _collect(self) -> dict[str, Any]:
         """The arrays that there are, checked: they may have been changed."""
+        if self._has_let_go and len(self.sizes) == 0:
+            raise ValueError("its arrays were let go of (release=True), and this is another scene: give a new Mesh")
         arrays: dict[str, Any] = {"positions": as_floats(self.positions, "positions", 3)}
         check_finite(arrays["positions"], "positions")
         arrays["sizes"], corners = split_faces((to_numpy(self.sizes, "sizes"), to_numpy(self.corners, "corners")))

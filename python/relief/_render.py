@@ -97,7 +97,8 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
            level: Union[int, str, None] = None, pixel_error: Optional[float] = None, mode: Optional[str] = None,
            denoise: Union[bool, Path] = False, check_maps: bool = True, first_sample: Optional[int] = None,
            cache_mb: Optional[int] = None, frame: Optional[float] = None, progress: Union[bool, Callback, None] = None,
-           on_picture: Optional[PictureCallback] = None, picture_interval: float = 0.5, **more: Any) -> Picture:
+           on_picture: Optional[PictureCallback] = None, picture_interval: float = 0.5, release: bool = False,
+           **more: Any) -> Picture:
     """Renders a Scene, a Mesh, or the file of a scene or mesh. Without the GIL: other threads of Python go on.
 
     size: width and height, pixels; (1280, 720) unless the scene says another. spp: samples a pixel, 64. bounces: path
@@ -110,6 +111,7 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     range of samples. check_maps: warn of maps whose values speak against what is said of them; a few hundredths of a second a
     map. cache_mb: cap of the cache of patch trees. frame: of values with keys and of files with `####`, may
     lie between two; the first of the scene's render.frames unless given; with motion blur where the camera has a "shutter".
+    release: True, so that a Scene is emptied once it has been read, and its arrays are not held twice.
     more: lod, bounce_levels, leaf, isa, structure, traversal,
     method, bottom, pipeline_cache, as the options of `relief render`.
 
@@ -128,8 +130,11 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     entries = make_entries(keywords)
     denoisers, interval = choose_denoisers(denoise), read_interval(picture_interval)
     is_checked = as_bool(check_maps, "check_maps")
+    parsed = parse_any(scene, frame)
+    if as_bool(release, "release") and isinstance(scene, Scene):
+        scene.clear()
     with open_progress(progress) as callback:
-        answer = _relief.render(parse_any(scene, frame), keywords, callback, wrap_picture(on_picture, entries), interval,
+        answer = _relief.render(parsed, keywords, callback, wrap_picture(on_picture, entries), interval,
                                 is_checked, denoisers is not None, denoisers or [])
     return finish(answer, entries)
 

@@ -25,16 +25,19 @@ FRAMES = (-1e6, 1e6)
 MAX_PICTURE_SIZE = 65536  # pixels of a side
 
 
-class _Collector:
+class Collector:
     """Turns values into those of JSON, and keeps what they refer to by made-up names."""
 
     def __init__(self) -> None:
         self.meshes: dict[str, dict[str, Array]] = {}
-        self.textures: dict[str, Array] = {}
+        self.textures: dict[str, Any] = {}
+
+    def make_name(self) -> str:
+        return f"memory:{len(self.textures)}"
 
     def name_picture(self, value: Any, place: str) -> Optional[str]:
         """The name of an array or of tiles; None for anything else."""
-        name = f"memory:{len(self.textures)}"
+        name = self.make_name()
         if isinstance(value, Mapping) and value and all(isinstance(key, (int, np.integer)) for key in value):
             for udim, tile in value.items():
                 if not 1001 <= int(udim) <= 9999:
@@ -138,6 +141,10 @@ class Scene:
         self.render: dict[str, Any] = {}
         self.folder = ""
         self._is_completed = False  # by from_mesh
+
+    def clear(self) -> None:
+        """Empties the scene, as a new one."""
+        self.__init__()  # type: ignore[misc]
 
     # Reading and writing
 
@@ -292,9 +299,9 @@ class Scene:
 
     # For the library
 
-    def _collect(self) -> tuple[str, _Collector]:
+    def _collect(self, collector: Optional[Collector] = None) -> tuple[str, Collector]:
         """The text of a scene file, and what it names."""
-        collector = _Collector()
+        collector = collector or Collector()
         root: dict[str, Any] = {"version": 1}
         for key in ("render", "camera", "environment"):
             if getattr(self, key):
@@ -361,6 +368,16 @@ def _make_name(wanted: str, taken: set[str]) -> str:
 
 
 Renderable = Union[Scene, Mesh, Path]
+
+
+def as_scene(scene: Renderable) -> Scene:
+    """Of a Scene, a Mesh, a scene file, or a mesh file."""
+    if isinstance(scene, Scene):
+        return scene
+    if isinstance(scene, Mesh):
+        return Scene.from_mesh(scene)
+    path = as_path(scene, "scene", "a Scene, a Mesh, or the name of a file")
+    return Scene.from_mesh(path) if _relief.is_mesh_file(path) else Scene.load(path)
 
 
 def parse_any(scene: Renderable, frame: Optional[float] = None) -> _relief.Scene:

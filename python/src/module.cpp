@@ -13,6 +13,7 @@ NB_MODULE(_relief, module) {
     add_pictures(module);
     add_scenes(module);
     add_renders(module);
+    add_live_scenes(module);
     add_rays(module);
     add_tools(module);
     module.def("_close", &close_gate);

@@ -24,6 +24,7 @@ class Mailbox final : public RenderObserver {
   public:
     struct News {
         std::optional<Progress> progress;
+        std::optional<double> prepared;
         std::optional<Image> picture;
         bool is_done = false;
     };
@@ -36,6 +37,10 @@ class Mailbox final : public RenderObserver {
         const std::lock_guard lock(mutex_);
         news_.progress = progress;
         changed_.notify_all();
+    }
+    void on_preparation(double fraction) override {
+        const std::lock_guard lock(mutex_);
+        news_.prepared = fraction;
     }
     bool is_cancelled() const override { return is_cancelled_; }
     double picture_interval_s() const override { return picture_interval_s_; }
@@ -90,11 +95,12 @@ class Worker {
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
 
-    RenderResult finish() {
+    /// Waits for the end; null: `work` has returned.
+    std::exception_ptr find_failure() {
         thread_.join();
-        if (failure_) std::rethrow_exception(failure_);
-        return std::move(result_);
+        return failure_;
     }
+    RenderResult take_result() { return std::move(result_); }
 
   private:
     Mailbox& mailbox_;
@@ -112,7 +118,9 @@ nb::object take_exception(const nb::python_error& error) {
 /// Runs callbacks and handlers of signals until the render is over.
 class Waiter {
   public:
-    Waiter(Mailbox& mailbox, const RenderCallbacks& callbacks) : mailbox_(mailbox), callbacks_(callbacks) {}
+    Waiter(Mailbox& mailbox, const RenderCallbacks& callbacks) : mailbox_(mailbox), callbacks_(callbacks) {
+        latest_.samples_total = callbacks.samples_total, latest_.prepared = 0;
+    }
 
     void wait() {
         constexpr std::chrono::milliseconds kPatience(50);
@@ -124,9 +132,7 @@ class Waiter {
             if (is_gate_closing()) mailbox_.cancel();
             handle([&] { check_signals(); });
             if (failure_.is_valid() || interrupts_ > 0) continue;
-            has_begun_ |= news.progress || news.picture || news.is_done;
-            if (!has_begun_ && ++looks_ % kLooksACall == 0) news.progress = callbacks_.at_start;
-            if (news.progress) call(callbacks_.on_progress, [&] { return nb::cast(*news.progress); });
+            follow_progress(news);
             if (news.picture)
                 call(callbacks_.on_picture, [&] { return make_picture(std::move(*news.picture)); });
         }
@@ -139,7 +145,16 @@ class Waiter {
     }
 
   private:
-    static constexpr int kLooksACall = 4; ///< of on_progress while the scene is prepared
+    static constexpr int kLooksACall = 2; ///< of on_progress while there is nothing new
+
+    /// What was told last is told again, so that a callback that wants an end need not wait long.
+    void follow_progress(const Mailbox::News& news) {
+        if (news.prepared && !has_begun_) latest_.prepared = *news.prepared;
+        if (news.progress || news.picture) has_begun_ = true, latest_.prepared = 1;
+        if (news.progress) static_cast<Progress&>(latest_) = *news.progress;
+        if (news.is_done ? !news.progress : !news.progress && ++looks_ % kLooksACall != 0) return;
+        call(callbacks_.on_progress, [&] { return nb::cast(latest_); });
+    }
 
     template <class Body> void handle(const Body& body) {
         try {
@@ -167,6 +182,7 @@ class Waiter {
     const RenderCallbacks& callbacks_;
     int interrupts_ = 0, looks_ = 0;
     bool has_begun_ = false;
+    JobProgress latest_;
     nb::object interrupt_, failure_;
 };
 
@@ -178,10 +194,24 @@ JobReport run_job(const std::function<RenderResult(RenderObserver&)>& work,
     Waiter waiter(mailbox, callbacks);
     Worker worker(work, mailbox);
     waiter.wait();
+    const std::exception_ptr failure = worker.find_failure();
     JobReport report;
-    report.result = worker.finish();
+    report.result = worker.take_result();
     report.failure = waiter.find_failure(report.result.whole_samples > 0);
+    if (failure && report.failure.is_none()) std::rethrow_exception(failure);
     return report;
+}
+
+void run_step(const std::function<void(RenderObserver&)>& work, const nb::object& on_progress,
+              int samples_total) {
+    const auto run = [&](RenderObserver& observer) {
+        work(observer);
+        return RenderResult();
+    };
+    const JobReport report = run_job(run, {on_progress, nb::none(), 0.5, samples_total});
+    if (report.failure.is_none()) return;
+    PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(report.failure.ptr())), report.failure.ptr());
+    throw nb::python_error();
 }
 
 } // namespace relief::python

@@ -15,12 +15,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "base/stop_request.h"
-#include "cli/statistics_report.h"
-#include "common/report.h"
+#include "answers.h"
 #include "exit_gate.h"
 #include "parts.h"
-#include "pictures.h"
 #include "relief/denoise.h"
 #include "relief/error.h"
 #include "relief/session.h"
@@ -35,18 +32,6 @@ namespace nb = nanobind;
 namespace relief::python {
 
 namespace {
-
-/// Image or None, statistics as JSON text, warnings, whether it is complete, samples of every pixel,
-/// exception or None.
-nb::object make_answer(JobReport&& report, const RenderSettings& settings) {
-    RenderResult& result = report.result;
-    const std::string statistics = write_json(cli::describe_statistics(result, settings), 0);
-    nb::list warnings;
-    for (const std::string& warning : result.statistics.warnings) warnings.append(name_keywords(warning));
-    const bool has_picture = result.whole_samples > 0;
-    return nb::make_tuple(has_picture ? make_picture(std::move(result.image)) : nb::none(), statistics,
-                          warnings, result.is_complete, result.whole_samples, report.failure);
-}
 
 /// Loaded before the render, which would be in vain without it; null where nothing is to be denoised.
 std::shared_ptr<const Denoiser> load_denoiser(const std::vector<std::string>& libraries, bool is_wanted,
@@ -64,12 +49,12 @@ std::shared_ptr<const Denoiser> load_denoiser(const std::vector<std::string>& li
 
 /// Null where the observer cancels meanwhile. The scene is used up.
 std::unique_ptr<Session> make_session(Scene&& scene, const RenderSettings& settings,
-                                      const RenderObserver& observer) {
-    const StopScope scope([&observer] { return observer.is_cancelled(); });
+                                      RenderObserver& observer) {
     try {
-        return std::make_unique<Session>(std::move(scene), settings, SessionUse::scenes);
-    } catch (const StopRequest&) {
-        return nullptr;
+        return std::make_unique<Session>(std::move(scene), settings, SessionUse::scenes, &observer);
+    } catch (const Error&) {
+        if (observer.is_cancelled()) return nullptr;
+        throw;
     }
 }
 
@@ -86,20 +71,13 @@ RenderResult render_parsed(ParsedScene& parsed, const RenderSettings& settings, 
     return session->render_moving(parsed.frame, update, &observer);
 }
 
-RenderCallbacks make_callbacks(nb::object&& on_progress, nb::object&& on_picture, double picture_interval_s,
-                               const RenderSettings& settings) {
-    RenderCallbacks callbacks{std::move(on_progress), std::move(on_picture), picture_interval_s};
-    callbacks.at_start.samples_total = settings.image.spp;
-    return callbacks;
-}
-
 /// The scene is used up.
 nb::object render_scene(ParsedScene& parsed, const nb::dict& keywords, nb::object on_progress,
                         nb::object on_picture, double picture_interval_s, bool is_checked, bool is_denoised,
                         const std::vector<std::string>& denoisers) {
     RenderSettings settings = read_settings(keywords, parsed.scene.picture);
-    const RenderCallbacks callbacks =
-        make_callbacks(std::move(on_progress), std::move(on_picture), picture_interval_s, settings);
+    const RenderCallbacks callbacks{std::move(on_progress), std::move(on_picture), picture_interval_s,
+                                    settings.image.spp};
     const GateVisit visit;
     const auto denoiser = load_denoiser(denoisers, is_denoised, settings);
     const auto work = [&parsed, &settings, denoiser, is_checked](RenderObserver& observer) {
@@ -141,8 +119,8 @@ class PaintSession {
 
     nb::object render(nb::object on_progress, nb::object on_picture, double picture_interval_s) {
         const auto lock = enter();
-        const RenderCallbacks callbacks =
-            make_callbacks(std::move(on_progress), std::move(on_picture), picture_interval_s, settings_);
+        const RenderCallbacks callbacks{std::move(on_progress), std::move(on_picture), picture_interval_s,
+                                        settings_.image.spp};
         const GateVisit visit;
         return make_answer(
             run_job([&](RenderObserver& observer) { return session_->render(&observer); }, callbacks),
@@ -197,12 +175,14 @@ class PaintSession {
 } // namespace
 
 void add_renders(nb::module_& module) {
-    nb::class_<Progress>(module, "Progress", "How far a render is.")
-        .def_ro("fraction", &Progress::fraction, "in [0, 1], of all samples")
-        .def_ro("samples_done", &Progress::samples_done, "of every pixel")
-        .def_ro("samples_total", &Progress::samples_total, "of every pixel")
-        .def_ro("rays", &Progress::rays, "traced so far")
-        .def_ro("elapsed_s", &Progress::elapsed_s, "seconds since the first ray");
+    nb::class_<JobProgress>(module, "Progress", "How far a render is.")
+        .def_ro("prepared", &JobProgress::prepared,
+                "in [0, 1], of the faces of meshes, before the first ray; then 1")
+        .def_ro("fraction", &JobProgress::fraction, "in [0, 1], of all samples")
+        .def_ro("samples_done", &JobProgress::samples_done, "of every pixel")
+        .def_ro("samples_total", &JobProgress::samples_total, "of every pixel")
+        .def_ro("rays", &JobProgress::rays, "traced so far")
+        .def_ro("elapsed_s", &JobProgress::elapsed_s, "seconds since the first ray");
     module.def("render", &render_scene, nb::arg("scene"), nb::arg("keywords"), nb::arg("on_progress").none(),
                nb::arg("on_picture").none(), nb::arg("picture_interval"), nb::arg("is_checked"),
                nb::arg("is_denoised"), nb::arg("denoisers"));

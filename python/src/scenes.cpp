@@ -44,13 +44,7 @@ ScenePointer load_shot(std::unique_ptr<Shot> shot, std::optional<double> frame) 
 
 ScenePointer parse(const std::string& text, const std::string& folder, const nb::dict& meshes,
                    const nb::dict& textures, std::optional<double> frame) {
-    SceneAssets assets;
-    for (const auto& [name, arrays] : meshes)
-        assets.meshes[nb::cast<std::string>(name)] = make_mesh(nb::cast<nb::dict>(arrays));
-    for (const auto& [name, array] : textures) {
-        const std::string text_name = nb::cast<std::string>(name);
-        assets.textures[text_name] = std::make_shared<const Texture>(make_texture(array, text_name));
-    }
+    SceneAssets assets = read_assets(meshes, textures);
     const GateVisit visit;
     const nb::gil_scoped_release release;
     return load_shot(std::make_unique<Shot>(text, folder, std::move(assets)), frame);
@@ -166,6 +160,19 @@ std::vector<std::string> list_warnings(const ParsedScene& parsed) {
 
 } // namespace
 
+SceneAssets read_assets(const nb::dict& meshes, const nb::dict& textures) {
+    SceneAssets assets;
+    for (const auto& [name, arrays] : meshes)
+        assets.meshes[nb::cast<std::string>(name)] = make_mesh(nb::cast<nb::dict>(arrays));
+    for (const auto& [name, array] : textures) {
+        const std::string text_name = nb::cast<std::string>(name);
+        assets.textures[text_name] = nb::isinstance<SharedTexture>(array)
+                                         ? nb::cast<const SharedTexture&>(array).texture
+                                         : std::make_shared<const Texture>(make_texture(array, text_name));
+    }
+    return assets;
+}
+
 std::vector<std::string> find_doubts(const Scene& scene) {
     std::vector<std::string> doubts;
     for (Finding& finding : find_doubtful_assumptions(scene))
@@ -185,6 +192,13 @@ void add_scenes(nb::module_& module) {
         .def_prop_ro("picture", &describe_picture)
         .def_prop_ro("hash", [](const ParsedScene& p) { return p.scene.hash; })
         .def_prop_ro("warnings", &list_warnings);
+    nb::class_<SharedTexture>(module, "Texture", "Texels that several scenes share.")
+        .def(
+            "__init__",
+            [](SharedTexture* place, nb::handle array, const std::string& name) {
+                new (place) SharedTexture{std::make_shared<const Texture>(make_texture(array, name))};
+            },
+            nb::arg("array"), nb::arg("name"));
     module.def("parse_scene", &parse, nb::arg("text"), nb::arg("folder"), nb::arg("meshes"),
                nb::arg("textures"), nb::arg("frame").none());
     module.def("load_scene", &load, nb::arg("file"), nb::arg("frame") = nb::none());

@@ -7,6 +7,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include "relief/io.h"
 #include "relief/scene.h"
 #include "relief/shot.h"
 
@@ -19,6 +20,9 @@ struct ParsedScene {
     std::unique_ptr<Shot> shot;
     double frame = 1;
 };
+
+/// `meshes`: arrays by name; `textures`: arrays, or SharedTexture, by name.
+SceneAssets read_assets(const nanobind::dict& meshes, const nanobind::dict& textures);
 
 /// What speaks against what was said or assumed of the maps of a scene.
 std::vector<std::string> find_doubts(const Scene& scene);

@@ -10,6 +10,7 @@
 #include "prepare/editable_scene.h"
 #include "prepare/surface_change.h"
 #include "prepare/surface_recipe.h"
+#include "scene/left_out_mesh.h"
 
 namespace relief {
 
@@ -30,9 +31,6 @@ struct SceneParts {
     uint64_t made_surfaces = 0;  ///< from meshes, of this scene and all before it
     bool has_old_numbers = true; ///< as SameParts::has_old_numbers(), of this scene and the one before
 };
-
-/// Whether a mesh is left out because it is as before (SceneUpdate::scene).
-inline bool is_left_out(const Mesh& mesh) { return mesh.positions.empty() && mesh.face_sizes.empty(); }
 
 /// Which parts of a scene are those that were there before: a byte each.
 struct SameParts {

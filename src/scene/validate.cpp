@@ -17,6 +17,7 @@
 #include "relief/scene.h"
 #include "scene/check_input_textures.h"
 #include "scene/displacement_conventions.h"
+#include "scene/left_out_mesh.h"
 #include "scene/object_names.h"
 #include "scene/uv_sets.h"
 
@@ -320,6 +321,7 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
         fail(where, fmt::format("the transform carries it farther out than {:g}", kFarthest),
              "use a smaller scale or translation");
     const Mesh& mesh = scene.meshes[object.mesh];
+    if (is_left_out(mesh)) return;
     if (object.displacement != kNoIndex && mesh.uv_indices.empty())
         fail(where,
              fmt::format("{} has no uvs, which its displacement needs",
@@ -446,7 +448,14 @@ void validate_camera(const Camera& camera) {
 }
 
 void validate_scene(const Scene& scene) {
-    for (size_t i = 0; i < scene.meshes.size(); ++i) validate_mesh(scene.meshes[i], i);
+    for (size_t i = 0; i < scene.meshes.size(); ++i)
+        if (is_left_out(scene.meshes[i])) validate_mesh(scene.meshes[i], i);
+    validate_without_left_out(scene);
+}
+
+void validate_without_left_out(const Scene& scene) {
+    for (size_t i = 0; i < scene.meshes.size(); ++i)
+        if (!is_left_out(scene.meshes[i])) validate_mesh(scene.meshes[i], i);
     for (size_t i = 0; i < scene.displacements.size(); ++i) check_displacement(scene.displacements[i], i);
     for (size_t i = 0; i < scene.materials.size(); ++i) check_material(scene.materials[i], i);
     std::vector<Box> mesh_boxes(scene.meshes.size());

@@ -5,6 +5,7 @@
 
 #include "io/scene_files.h"
 #include "relief/io.h"
+#include "relief/shot.h"
 
 namespace relief {
 
@@ -96,6 +97,37 @@ TEST_F(SceneFiles, a_scene_of_one_object_is_completed_as_a_mesh_alone_is) {
     scene.objects.push_back(scene.objects[0]);
     EXPECT_NE(message_of([&] { complete_mesh_scene(scene); }, ErrorKind::usage).find("2 objects"),
               std::string::npos);
+}
+
+TEST_F(SceneFiles, another_text_goes_on_with_the_pictures_of_the_last_one) {
+    write_pixels<uint8_t>("paint.png", 2, 1, 3, OIIO::TypeDesc::UINT8, {255, 128, 0, 10, 20, 30});
+    SceneAssets assets;
+    assets.meshes["quad"] = load_mesh(folder_ / "plane.obj");
+    assets.textures["map"] = read(folder_ / "map.exr");
+    const std::string text = rename(kText, "paint", "paint.png");
+    Shot shot(text, folder_, assets);
+    const Scene first = shot.load(1);
+    SceneAssets next;
+    next.textures = assets.textures;
+    next.kept_meshes["plane"] = hash_mesh(first.meshes[0]);
+    shot.change_text(text, next);
+    const Scene second = shot.load(1);
+    EXPECT_EQ(second.materials[0].base_color_texture, first.materials[0].base_color_texture);
+    EXPECT_EQ(second.displacements[0].tiles[0].texture, first.displacements[0].tiles[0].texture);
+    EXPECT_EQ(second.meshes[0].name, "plane");
+    EXPECT_TRUE(second.meshes[0].face_sizes.empty());
+    EXPECT_EQ(second.hash, first.hash) << "it is the same scene";
+    EXPECT_NE(message_of([&] { shot.change_text("{", next); }), "");
+    EXPECT_EQ(shot.load(1).hash, first.hash) << "nothing has changed";
+
+    write_pixels<uint8_t>("paint.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {1, 2, 3});
+    next.textures["map"] = std::make_shared<Texture>(*assets.textures["map"]);
+    shot.change_text(text, next);
+    const Scene third = shot.load(1);
+    EXPECT_EQ(third.materials[0].base_color_texture->width, 1u) << "the file has changed";
+    EXPECT_EQ(third.displacements[0].tiles[0].texture, next.textures["map"]);
+    EXPECT_NE(third.environment->texture, second.environment->texture) << "made of the map";
+    EXPECT_NE(third.hash, first.hash);
 }
 
 } // namespace relief

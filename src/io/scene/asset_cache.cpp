@@ -147,6 +147,30 @@ std::shared_ptr<const Texture> AssetCache::find_given(const std::string& file) c
     return found == given_.textures.end() ? nullptr : found->second;
 }
 
+std::optional<AssetCache::FileStamp> AssetCache::read_stamp(const fs::path& file) {
+    std::error_code code;
+    FileStamp stamp{fs::last_write_time(file, code), 0};
+    if (!code) stamp.bytes = fs::file_size(file, code);
+    return code ? std::nullopt : std::optional(stamp);
+}
+
+void AssetCache::change_given(SceneAssets given) {
+    std::swap(given_, given);
+    std::erase_if(textures_, [&](const auto& entry) {
+        const auto& [key, kept] = entry;
+        if (kept.stamp) return kept.stamp != read_stamp(std::get<0>(key));
+        const auto before = given.textures.find(std::get<0>(key));
+        return before == given.textures.end() || find_given(before->first) != before->second;
+    });
+    forget(1, 0);
+    meshes_.clear(), sequences_.clear();
+}
+
+const uint64_t* AssetCache::find_kept(const std::string& mesh) const {
+    const auto found = given_.kept_meshes.find(mesh);
+    return found == given_.kept_meshes.end() ? nullptr : &found->second;
+}
+
 std::shared_ptr<const Texture> AssetCache::load(const std::string& file, TextureUse use, uint32_t channel,
                                                 const std::string& space) {
     const std::shared_ptr<const Texture> given = find_given(file);
@@ -159,6 +183,7 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
     Kept<Texture>& cached = textures_[key];
     cached.frame = frame_;
     if (cached.value) return cached.value;
+    if (!given) cached.stamp = read_stamp(path);
     auto texture = std::make_shared<Texture>(given ? *given : read_texture(path));
     return cached.value = decode(std::move(texture), use, channel, space);
 }

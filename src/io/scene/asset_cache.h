@@ -50,6 +50,12 @@ class AssetCache {
         return load_tiles(file, TextureUse::data);
     }
 
+    /// Another scene begins, with these: textures of files that are as they were stay.
+    void change_given(SceneAssets given);
+    /// The hash of a mesh that is left out; null: it is not.
+    const uint64_t* find_kept(const std::string& mesh) const;
+    bool has_kept() const { return !given_.kept_meshes.empty(); }
+
     /// Another reading of the scene begins: it is warned of all again.
     void begin() { single_tiles_.clear(), told_of_meshes_.clear(), warnings_.clear(); }
     /// What is loaded from now on belongs to a frame; names that name_blend() made are known no more.
@@ -78,6 +84,13 @@ class AssetCache {
     }
 
   private:
+    /// What a file is known to be the same by.
+    struct FileStamp {
+        std::filesystem::file_time_type time;
+        uintmax_t bytes = 0;
+        friend bool operator==(const FileStamp&, const FileStamp&) = default;
+    };
+    static std::optional<FileStamp> read_stamp(const std::filesystem::path& file);
     std::shared_ptr<const Texture> find_given(const std::string& file) const;
     std::shared_ptr<const Texture> decode(std::shared_ptr<Texture> texture, TextureUse use, uint32_t channel,
                                           const std::string& space);
@@ -97,6 +110,7 @@ class AssetCache {
         std::shared_ptr<const Value> value;
         int64_t frame = 0;
         std::vector<std::string> warnings = {}; ///< of its file, told again by each reading of the scene
+        std::optional<FileStamp> stamp = {};    ///< of its file
     };
     /// Of a blend: nobody but its scene needs it.
     static constexpr int64_t kNoFrame = std::numeric_limits<int64_t>::min();

@@ -19,6 +19,11 @@ std::vector<int> read_frames(const Json& document, const std::string& name) {
     return frames ? parse_frames_at(*frames) : std::vector<int>();
 }
 
+bool has_shutter(const Json& document) {
+    const auto camera = document.find("camera");
+    return camera != document.end() && camera->is_object() && camera->contains("shutter");
+}
+
 bool is_open(const Camera& camera) { return camera.shutter_open < camera.shutter_close; }
 
 /// Times between which nothing but values with keys and blends of two files change: both ends of the
@@ -45,8 +50,13 @@ FrameReader::FrameReader(Json document, std::string name, AssetCache assets, con
       is_animated_(relief::is_animated(document_)),
       has_moving_sections_(relief::has_moving_sections(document_)),
       moving_(list_moving_parts(document_)) {
-    const auto camera = document_.find("camera");
-    assets_.keep_meshes(camera != document_.end() && camera->is_object() && camera->contains("shutter"));
+    assets_.keep_meshes(has_shutter(document_));
+}
+
+void FrameReader::take_over_pictures(FrameReader& before, SceneAssets given) {
+    assets_ = std::move(before.assets_);
+    assets_.change_given(std::move(given));
+    assets_.keep_meshes(has_shutter(document_));
 }
 
 FrameReader::Ends FrameReader::choose_ends(double frame) {

@@ -25,6 +25,9 @@ class FrameReader {
     FrameReader(const FrameReader&) = delete;
     FrameReader& operator=(const FrameReader&) = delete;
 
+    /// Goes on with the pictures of a reader of another document, which is of no use then, and with `given`.
+    void take_over_pictures(FrameReader& before, SceneAssets given);
+
     const std::vector<int>& frames() const { return frames_; }
     bool is_animated() const { return is_animated_; }
 

@@ -3,9 +3,20 @@
 #include <array>
 #include <set>
 
+#include "relief/io.h"
+
 namespace relief {
 
 namespace {
+
+uint64_t hash_texture(const Texture& texture) {
+    ContentHash hash;
+    hash.add(std::array{texture.width, texture.height, texture.channel_count});
+    hash.add(texture.floats), hash.add(texture.halves);
+    return hash.value();
+}
+
+} // namespace
 
 uint64_t hash_mesh(const Mesh& mesh) {
     ContentHash hash;
@@ -24,14 +35,10 @@ uint64_t hash_mesh(const Mesh& mesh) {
     return hash.value();
 }
 
-uint64_t hash_texture(const Texture& texture) {
-    ContentHash hash;
-    hash.add(std::array{texture.width, texture.height, texture.channel_count});
-    hash.add(texture.floats), hash.add(texture.halves);
-    return hash.value();
+void SceneContent::set_mesh(size_t index, uint64_t hash) {
+    if (index >= meshes_.size()) meshes_.resize(index + 1);
+    meshes_[index] = hash;
 }
-
-} // namespace
 
 void add_scene_content(ContentHash& hash, const Scene& scene) { SceneContent().add_to(hash, scene); }
 

@@ -19,6 +19,8 @@ class SceneContent {
   public:
     /// Meshes without faces are as they were.
     void add_to(ContentHash& hash, const Scene& scene);
+    /// What add_to() has for a mesh without faces.
+    void set_mesh(size_t index, uint64_t hash);
 
   private:
     uint64_t find_hash(const std::shared_ptr<const Texture>& texture);

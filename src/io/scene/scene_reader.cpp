@@ -20,6 +20,7 @@
 #include "math/affine.h"
 #include "relief/error.h"
 #include "relief/io.h"
+#include "scene/left_out_mesh.h"
 #include "scene/uv_sets.h"
 
 namespace relief {
@@ -82,7 +83,8 @@ Mesh read_polygons(const JsonNode& node, AssetCache& assets, const MeshReaderSet
 Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets,
                const MeshReaderSettings& reader, const std::vector<int>& uv_sets) {
     node.check_keys(scene_keys::kMesh);
-    Mesh mesh = read_polygons(node, assets, reader, uv_sets);
+    Mesh mesh;
+    if (!assets.find_kept(name)) mesh = read_polygons(node, assets, reader, uv_sets);
     mesh.name = name;
     if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
     return mesh;
@@ -186,8 +188,10 @@ void SceneReader::read(const Json& document, AssetCache& assets) {
     scene_.source = name_;
     read_root(JsonNode(document, "", name_), assets);
     scene_.warnings = std::move(assets.warnings());
+    for (size_t k = 0; k < scene_.meshes.size(); ++k)
+        if (const uint64_t* hash = assets.find_kept(scene_.meshes[k].name)) content_.set_mesh(k, *hash);
     try {
-        validate_scene(scene_);
+        assets.has_kept() ? validate_without_left_out(scene_) : validate_scene(scene_);
     } catch (const Error& error) {
         throw Error(error.kind(), {error.message(), name_ + ": " + error.where(), error.hint()});
     }

@@ -34,20 +34,34 @@ void add_buffers(const std::filesystem::path& file, std::vector<std::filesystem:
 struct Shot::Implementation {
     std::filesystem::path file;
     FrameReader reader;
+    MeshReaderSettings settings;
 };
 
 Shot::Shot(const std::filesystem::path& file, const MeshReaderSettings& reader) {
     refuse_foreign_file(file);
     const std::string name = file.string();
-    implementation_.reset(new Implementation{file, FrameReader(parse_json(read_file_bytes(file), name), name,
-                                                               AssetCache(file.parent_path()), reader)});
+    implementation_.reset(new Implementation{
+        file,
+        FrameReader(parse_json(read_file_bytes(file), name), name, AssetCache(file.parent_path()), reader),
+        reader});
 }
 
 Shot::Shot(std::string_view text, const std::filesystem::path& folder, SceneAssets assets,
            const MeshReaderSettings& reader)
-    : implementation_(
-          new Implementation{folder / "scene", FrameReader(parse_json(text, "scene"), "scene",
-                                                           AssetCache(folder, std::move(assets)), reader)}) {}
+    : implementation_(new Implementation{
+          folder / "scene",
+          FrameReader(parse_json(text, "scene"), "scene", AssetCache(folder, std::move(assets)), reader),
+          reader}) {}
+
+void Shot::change_text(std::string_view text, SceneAssets assets) {
+    const std::filesystem::path folder = implementation_->file.parent_path();
+    std::unique_ptr<Implementation> next(new Implementation{
+        implementation_->file,
+        FrameReader(parse_json(text, "scene"), "scene", AssetCache(folder), implementation_->settings),
+        implementation_->settings});
+    next->reader.take_over_pictures(implementation_->reader, std::move(assets));
+    implementation_ = std::move(next);
+}
 
 Shot::~Shot() = default;
 Shot::Shot(Shot&&) noexcept = default;

@@ -1,0 +1,28 @@
+#include "answers.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nanobind/stl/string.h>
+
+#include "cli/statistics_report.h"
+#include "common/report.h"
+#include "pictures.h"
+#include "settings.h"
+
+namespace nb = nanobind;
+
+namespace relief::python {
+
+nb::object make_answer(JobReport&& report, const RenderSettings& settings) {
+    RenderResult& result = report.result;
+    const std::string statistics = write_json(cli::describe_statistics(result, settings), 0);
+    nb::list warnings;
+    for (const std::string& warning : result.statistics.warnings) warnings.append(name_keywords(warning));
+    const bool has_picture = result.whole_samples > 0;
+    return nb::make_tuple(has_picture ? make_picture(std::move(result.image)) : nb::none(), statistics,
+                          warnings, result.is_complete, result.whole_samples, report.failure);
+}
+
+} // namespace relief::python
