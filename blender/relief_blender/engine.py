@@ -8,7 +8,7 @@ from . import faults, passes, statistics
 from .camera_export import report_clipping
 from .motion_export import MotionExport
 from .properties import find_threads
-from .render_job import RenderJob, has_left
+from .render_job import RenderJob, describe, has_left
 from .report import Report
 from .scene_export import SceneExport
 from .stereo import find_cameras, find_views
@@ -83,7 +83,7 @@ class ReliefEngine(bpy.types.RenderEngine):
         for number, (name, view) in enumerate(self._views.items()):
             taken.camera = self._motion.cameras[name]
             is_last = number == len(self._views) - 1
-            job = RenderJob(taken, {**make_settings(scene, view, layers), **self._motion.settings},
+            job = RenderJob(taken, {**make_settings(scene, view, layers), **self._motion.settings, "release": is_last},
                             on_end=self._motion.make_clean_up() if is_last else None)
             if is_last:
                 taken = None
@@ -107,7 +107,7 @@ class ReliefEngine(bpy.types.RenderEngine):
             if kind == "progress":
                 before = list(self._views).index(name)
                 self.update_progress((before + thing.fraction) / len(self._views))
-                self.update_stats("", f"Sample {thing.samples_done}/{thing.samples_total}")
+                self.update_stats("", describe(thing))
             elif kind == "picture":
                 self._show(thing, depsgraph, name, is_last=False)
             elif kind == "done":

@@ -7,6 +7,7 @@ import relief
 
 from . import faults
 from .displacement_export import DisplacementReader
+from .kept_parts import KeptMaterial
 from .node_tree import NotExpressible, Wire, find_output
 from .node_values import NodeValues
 from .shaders import FALLBACK, Shaders
@@ -35,8 +36,9 @@ class MaterialExport:
     `sources`: the original bpy.types.Material of each name. `derived`: displacements that are others but for a factor of
     their scale, as (name of the other, factor). `without_normals`: {name: name of the same without its normal map}."""
 
-    def __init__(self, scene, report, tiles=None):
-        self._scene, self._report, self._done, self._tiles = scene, report, {}, tiles
+    def __init__(self, scene, report, kept=None):
+        """kept: a KeptParts, where the same materials may come again."""
+        self._scene, self._report, self._done, self._kept = scene, report, {}, kept
         self.sources, self.derived, self.without_normals = {}, {}, {}
 
     def export(self, material):
@@ -44,7 +46,9 @@ class MaterialExport:
         key = material.name_full if material else ""
         if key not in self._done:
             with faults.place("material", key):
-                self._done[key] = self._make(material)
+                self._done[key] = self._take_kept(key) if self._kept and key else None
+                if self._done[key] is None:
+                    self._done[key] = self._make(material)
             if material is not None:
                 self.sources[key] = material.original
         return self._done[key]
@@ -62,6 +66,23 @@ class MaterialExport:
         keys = {key: value for key, value in self._scene.materials[name].items() if key != "geometry_normal"}
         self._scene.materials[self.without_normals[name]] = relief.Material(keys)
 
+    def _take_kept(self, name):
+        """The ExportedMaterial of an export before, or None."""
+        kept = self._kept.find_material(name)
+        if kept is None:
+            return None
+        self._scene.materials[name] = kept.keys
+        if kept.displacement is not None:
+            self._scene.displacements[name] = kept.displacement
+        return kept.exported
+
+    def _keep(self, name, exported, texels):
+        """Images that are being painted on change without a word."""
+        if self._kept and not texels.has_dirty_images():
+            self._kept.keep_material(name, KeptMaterial(exported, self._scene.materials[name],
+                                                        self._scene.displacements.get(name)))
+        return exported
+
     def _make(self, material):
         if material is None:
             name = find_free_name("default")
@@ -71,7 +92,7 @@ class MaterialExport:
 
         def report(text):
             self._report.add("material", name, text)
-        node_values = NodeValues(report, Texels(report, self._tiles))
+        node_values = NodeValues(report, Texels(report, self._kept.tiles if self._kept else None))
         keys, displacement = self._read(material, node_values, report)
         base = displacement.value.place if displacement else self._choose_place(keys)
         base = Place(base.uv_map, base.scale, base.offset)
@@ -81,9 +102,10 @@ class MaterialExport:
         self._scene.materials[name] = self._write(keys, writer, report)
         further = tuple(writer.further)
         if displacement is None:
-            return ExportedMaterial(name, None, base, further=further)
+            return self._keep(name, ExportedMaterial(name, None, base, further=further), node_values.texels)
         self._scene.displacements[name] = displacement.write(node_values.texels)
-        return ExportedMaterial(name, name, base, displacement.is_tangent, displacement.is_world_height, further)
+        return self._keep(name, ExportedMaterial(name, name, base, displacement.is_tangent, displacement.is_world_height,
+                                                 further), node_values.texels)
 
     def _read(self, material, node_values, report):
         """(keys of the surface, displacement or None)."""

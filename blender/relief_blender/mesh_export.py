@@ -1,10 +1,13 @@
 """Evaluated meshes as meshes of Relief: one a mesh and material."""
+import hashlib
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 import relief
 
 from . import mesh_arrays, mesh_repair, subdivision, topology
+from .kept_parts import KeptMeshes, find_owners
 from .values import Place
 
 
@@ -26,12 +29,26 @@ def find_materials(evaluated, mesh):
     return result
 
 
+def digest(mesh):
+    """A hash of all that a relief.Mesh has."""
+    whole = hashlib.blake2b(repr((mesh.subdivision, sorted(mesh.further_uvs))).encode(), digest_size=16)
+    arrays = [mesh.positions, mesh.sizes, mesh.corners, mesh.uvs, mesh.uv_indices, mesh.normals, mesh.normal_indices,
+              mesh.tangents, mesh.creases, mesh.sharpness]
+    for array in arrays + [array for number in sorted(mesh.further_uvs) for array in mesh.further_uvs[number]]:
+        whole.update(b"" if array is None else repr(array.shape).encode())
+        whole.update(b"" if array is None else np.ascontiguousarray(array))
+    return whole.digest()
+
+
 class MeshExport:
     """Adds meshes to a relief.Scene, each once for all objects that share it."""
 
-    def __init__(self, scene, materials, depsgraph, report):
+    def __init__(self, scene, materials, depsgraph, report, kept=None):
+        """kept: a KeptParts, where the same meshes may come again."""
         self._scene, self._materials, self._depsgraph, self._report = scene, materials, depsgraph, report
-        self._done = {}
+        self._done, self._kept = {}, kept
+        self._effects = []  # (method, argument) that change more of the scene than its meshes, of the object at hand
+        self._named = {}    # {name of a material in the file: ExportedMaterial} of the object at hand
 
     def export(self, evaluated, is_made_by_nodes=False):
         """The MeshParts of an evaluated object. Geometry nodes make instances of meshes that are no object's own."""
@@ -39,10 +56,44 @@ class MeshExport:
                       if slot.link == "OBJECT")
         modifier = None if is_made_by_nodes else subdivision.find_modifier(evaluated, self._depsgraph)
         owner = evaluated.original.name_full if modifier else ""
-        key = (evaluated.data.as_pointer(), slots, owner)
+        # Blender subdivides the mesh of an evaluated object when it is asked for: with a cage nobody asks.
+        data = evaluated.original.data if modifier else evaluated.data
+        key = (data.as_pointer(), slots, owner)
         if key not in self._done:
-            self._done[key] = self._make(evaluated, modifier)
+            self._done[key] = self._take_kept(key, evaluated) if self._kept else None
+        if self._done[key] is None:
+            self._done[key] = self._make_and_keep(key, evaluated, modifier)
         return self._done[key]
+
+    def _take_kept(self, key, evaluated):
+        """The MeshParts of an export before, or None."""
+        kept = self._kept.find_meshes(key, evaluated)
+        if kept is None or any(name in self._scene.meshes for name in kept.meshes):
+            return None
+        if self._export_named(kept.materials) != kept.materials:
+            return None
+        self._effects = []  # not those that are kept
+        for method, argument in kept.effects:
+            getattr(self, method)(argument)
+        self._scene.meshes.update(kept.meshes)
+        return kept.parts
+
+    def _export_named(self, names):
+        """{name: ExportedMaterial}, without materials that the file has no more."""
+        known = {material.name_full: material for material in bpy.data.materials}
+        return {name: self._materials.export(known[name].evaluated_get(self._depsgraph) if name else None)
+                for name in names if not name or name in known}
+
+    def _make_and_keep(self, key, evaluated, modifier):
+        self._effects, self._named = [], {}
+        before = set(self._scene.meshes)
+        parts = self._make(evaluated, modifier)
+        if self._kept and self._depsgraph.view_layer.material_override is None:
+            meshes = {name: mesh for name, mesh in self._scene.meshes.items() if name not in before}
+            digests = {name: digest(mesh) for name, mesh in meshes.items()} if modifier else {}
+            kept = KeptMeshes(find_owners(evaluated), self._named, parts, meshes, self._effects, digests)
+            self._scene.meshes.update(self._kept.keep_meshes(key, kept))
+        return parts
 
     def _make(self, evaluated, modifier):
         if modifier:
@@ -62,9 +113,13 @@ class MeshExport:
     def _used(self, evaluated, mesh):
         """{slot: ExportedMaterial} of the slots that faces use; slots beyond the last are the last."""
         override = self._depsgraph.view_layer.material_override
-        materials = [override.evaluated_get(self._depsgraph)] if override else find_materials(evaluated, mesh)
+        materials = [override] if override else find_materials(evaluated, mesh)
+        materials = [material.evaluated_get(self._depsgraph) if material else None for material in materials]
         indices = np.unique(np.minimum(mesh_arrays.read(mesh.polygons, "material_index", 1, np.int32), len(materials) - 1))
-        return {int(i): self._materials.export(materials[i]) for i in indices}
+        used = {int(i): self._materials.export(materials[i]) for i in indices}
+        for i, exported in used.items():
+            self._named[materials[i].name_full if materials[i] else ""] = exported
+        return used
 
     def _add_cage(self, evaluated, cage, modifier):
         """Parts of a subdivision surface; None where its faces are of several materials that Relief cannot join."""
@@ -126,6 +181,7 @@ class MeshExport:
 
     def _make_framed(self, displacement):
         """The same displacement in the frames that come with a mesh."""
+        self._effects.append(("_make_framed", displacement))
         name = f"{displacement} in given frames"
         if name not in self._scene.displacements:
             framed = relief.Displacement(**self._scene.displacements[displacement])
@@ -161,10 +217,14 @@ class MeshExport:
         """The ExportedMaterial of a mesh without uvs."""
         if material.displacement is not None:
             self._report.add("object", evaluated.original.name_full, "it has no uv map: it is not displaced")
-        plain = self._materials.leave_out_normal_map(material.material)
+        self._effects.append(("_leave_out_normal_map", material.material))
+        plain = self._leave_out_normal_map(material.material)
         if plain is not None:
             self._report.add("object", evaluated.original.name_full, "it has no uv map: its normal map is left out")
         return material._replace(material=plain or material.material, displacement=None)
+
+    def _leave_out_normal_map(self, material):
+        return self._materials.leave_out_normal_map(material)
 
     @staticmethod
     def _place_uvs(uvs, base):
@@ -173,7 +233,8 @@ class MeshExport:
         return (uvs * np.array(base.scale, np.float32) + np.array(base.offset, np.float32)).astype(np.float32)
 
     def _make_name(self, evaluated, material):
-        stem = f"{evaluated.data.name} of {material.material}" if evaluated.data else material.material
+        data = evaluated.original.data
+        stem = f"{data.name} of {material.material}" if data else material.material
         name, number = stem, 1
         while name in self._scene.meshes:
             number += 1

@@ -14,21 +14,24 @@ class RenderJob:
         self._news = queue.Queue()
         self.on_news = None  # called from the render's thread when there is something for poll()
         self._is_cancelled = threading.Event()
-        self._settings = dict(settings, picture_interval=picture_interval)
+        self._settings, self._picture_interval = dict(settings), picture_interval
         self._thread = threading.Thread(target=self._run, args=(scene, on_end), name="relief", daemon=True)
         self._thread.start()
 
     def _run(self, scene, on_end):
         news = None
         try:
-            picture = relief.render(scene, progress=self._on_progress, on_picture=self._on_picture, **self._settings)
-            news = "done", picture
+            news = "done", self._render(scene)
         except Exception as fault:  # handed to the thread that asked for the render
             news = "fault", fault
         finally:
             if on_end is not None:
                 on_end()
         self._tell(news)
+
+    def _render(self, scene):
+        return relief.render(scene, progress=self._on_progress, on_picture=self._on_picture,
+                             picture_interval=self._picture_interval, **self._settings)
 
     def _on_progress(self, progress):
         self._tell(("progress", progress))
@@ -54,7 +57,7 @@ class RenderJob:
         return self._is_cancelled.is_set()
 
     def cancel(self):
-        """Asks for the end, which is done or fault; it comes soon, or after the step that a preparation is at."""
+        """Asks for the end, which is done or fault, and comes within a moment."""
         self._is_cancelled.set()
 
     def leave(self):
@@ -62,6 +65,13 @@ class RenderJob:
         self.cancel()
         if self._thread.is_alive():
             _left.append(self._thread)
+
+
+def describe(progress):
+    """A line of a Progress for the status of Blender."""
+    if progress.prepared < 1 and progress.fraction == 0:
+        return f"Preparing surfaces, {progress.prepared:.0%}"
+    return f"Sample {progress.samples_done}/{progress.samples_total}"
 
 
 def has_left(timeout):

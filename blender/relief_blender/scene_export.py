@@ -37,13 +37,13 @@ def is_made_by_nodes(instance):
 class SceneExport:
     """`scene` is the relief.Scene, filled by run()."""
 
-    def __init__(self, depsgraph, report, tiles=None):
-        """tiles: a TileCache, where the same images may come again."""
+    def __init__(self, depsgraph, report, kept=None):
+        """kept: a KeptParts, where the same scene may come again."""
         self.scene = relief.Scene()
         self.instances = {}  # Instance by identify()
-        self.materials = MaterialExport(self.scene, report, tiles)
+        self.materials = MaterialExport(self.scene, report, kept)
         self._depsgraph, self._report = depsgraph, report
-        self._meshes = MeshExport(self.scene, self.materials, depsgraph, report)
+        self._meshes = MeshExport(self.scene, self.materials, depsgraph, report, kept)
         self._has_catchers = depsgraph.scene.render.film_transparent
         self._light_objects = []
         self._names = {}  # what links call objects and instancers: names of objects of the scene

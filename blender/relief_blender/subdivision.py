@@ -41,9 +41,19 @@ def is_adaptive(evaluated, modifier):
     return bool(cycles and getattr(cycles, "use_adaptive_subdivision", False))
 
 
+def is_own_cage(evaluated, depsgraph):
+    """Whether the cage is the mesh of the object as the file has it: nothing is done to it before it is subdivided."""
+    original, is_render = evaluated.original, depsgraph.mode == "RENDER"
+    shown = [m for m in original.modifiers if (m.show_render if is_render else m.show_viewport)]
+    return len(shown) == 1 and original.data.shape_keys is None and not original.data.is_editmode
+
+
 @contextmanager
 def cage_of(evaluated, modifier, depsgraph):
     """The mesh below the modifier, all others applied."""
+    if is_own_cage(evaluated, depsgraph):
+        yield evaluated.original.data
+        return
     shown = modifier.show_render, modifier.show_viewport
     modifier.show_render = modifier.show_viewport = False
     try:

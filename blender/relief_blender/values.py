@@ -58,10 +58,16 @@ class Texels:
     def __init__(self, report, tiles=None):
         self._report, self._tiles = report, tiles
         self._read = {}
+        self._images = []
+
+    def has_dirty_images(self):
+        """Whether one of the images that were read has changes that are in no file."""
+        return any(image.is_dirty for image in self._images)
 
     def read(self, image):
         key = image.name_full
         if key not in self._read:
+            self._images.append(image)
             self._read[key] = images.read_tiles(image, self._report, self._tiles)
         return self._read[key]
 

@@ -1,14 +1,16 @@
-"""The viewport: a coarse picture at once, then one of all pixels, begun anew when the scene or the view changes."""
+"""The viewport: a coarse picture at once, then one of all pixels, begun anew when the scene or the view changes. What has not
+changed of the scene stays exported and prepared."""
 import weakref
 
 import numpy as np
 
 from . import faults
 from .camera_export import add_depth_of_field, find_basis, make_view
-from .images import TileCache
+from .kept_parts import KeptParts
+from .live_job import LiveJob, LiveRenders
 from .passes import make_combined
 from .properties import find_threads
-from .render_job import RenderJob
+from .render_job import describe
 from .report import Report
 from .scene_export import SceneExport
 
@@ -37,7 +39,6 @@ def make_settings(scene, view, factor):
     return {"size": view.size, "crop": view.crop, "spp": 1 if factor > 1 else own.viewport_samples,
             "bounces": own.viewport_bounces, "pixel_error": own.viewport_pixel_error, "seed": own.seed,
             "engine": own.engine, "threads": find_threads(scene.render), "clamp_indirect": own.clamp_indirect,
-            "check_maps": False,
             "background": "transparent" if scene.render.film_transparent else None}
 
 
@@ -60,11 +61,11 @@ class Viewport:
 
     draw_picture(engine, scene, array, width, height) draws (height, width, 4) premultiplied linear values."""
 
-    def __init__(self, engine, draw_picture=draw_on_screen, make_job=RenderJob):
+    def __init__(self, engine, draw_picture=draw_on_screen, make_job=LiveJob):
         self._engine, self._draw_picture, self._make_job = weakref.ref(engine), draw_picture, make_job
         self._scene = self._job = self._key = self._array = None
-        self._tiles = TileCache()
-        self._factors = []
+        self._parts, self._renders = KeptParts(), LiveRenders()
+        self._factors, self._status = [], ""
         self._fault = ""  # nothing is drawn or tried again until the scene or the view changes
 
     def update(self, context, depsgraph):
@@ -74,8 +75,9 @@ class Viewport:
         self.stop()
         self._scene = self._key = None
         try:
-            self._scene = SceneExport(depsgraph, Report(), self._tiles).run()
-            self._tiles.forget_unused()
+            self._parts.follow(depsgraph)
+            self._scene = SceneExport(depsgraph, Report(), self._parts).run()
+            self._parts.forget_unused()
             self._show_fault("")
         except Exception as fault:
             self._show_fault(faults.describe(fault))
@@ -102,14 +104,20 @@ class Viewport:
             self._show_fault("")
         self._take_news(scene)
         if self._job is None and self._factors:
-            self._start(context, scene, self._factors.pop(0))
+            self._start(context, depsgraph, self._factors.pop(0))
         if self._array is not None:
             self._draw_picture(self._engine(), scene, self._array, *view.size)
 
-    def _start(self, context, scene, factor):
+    def _start(self, context, depsgraph, factor):
+        scene = depsgraph.scene
         view = find_view(context, scene, factor)
+        settings = make_settings(scene, view, factor)
+        if not self._renders.knows_meshes(settings):
+            self._renders.forget()
+            self._parts.forget_all()
+            self._scene = SceneExport(depsgraph, Report(), self._parts).run()
         self._scene.camera = view.camera
-        self._job = self._make_job(self._scene, make_settings(scene, view, factor), 0.1)
+        self._job = self._make_job(self._renders, self._scene, settings, 0.1)
         self._job.on_news = make_redraw(self._engine)
 
     def _take_news(self, scene):
@@ -118,12 +126,19 @@ class Viewport:
             if kind is None:
                 return
             is_wanted = not self._job.is_cancelled
+            self._show_status(describe(thing) if kind == "progress" and is_wanted and thing.fraction == 0 else "")
             if kind in {"done", "fault"}:
                 self._job = None
             if is_wanted and kind in {"picture", "done"}:
                 self._array = make_combined(np.array(thing.color), scene.render.film_transparent)
             if is_wanted and kind == "fault":
                 self._show_fault(faults.describe(thing))
+
+    def _show_status(self, text):
+        """In the status of Blender, while the scene is prepared."""
+        if text != self._status and not self._fault:
+            self._engine().update_stats("", text)
+        self._status = text
 
     def _show_fault(self, text):
         """In the corner of the viewport and in the console, once; "": there is none any more."""

@@ -1,5 +1,5 @@
 """The viewport: its pictures, its faults, and its end."""
-from support import BlenderTest, main, make_grid, make_image, make_material  # first: it makes the add-on known
+from support import BlenderTest, add_light, main, make_grid, make_image, make_material, subdivide  # first: it makes the add-on known
 import gc
 import threading
 import time
@@ -9,9 +9,10 @@ from unittest import mock
 import bpy
 import numpy as np
 from mathutils import Matrix
-from relief_blender import images
+from relief_blender import images, mesh_arrays
 from relief_blender import viewport as viewport_module
 from relief_blender.engine import ReliefEngine
+from relief_blender.live_job import LiveJob, LiveRenders
 from relief_blender.render_job import RenderJob
 from relief_blender.viewport import Viewport
 
@@ -31,12 +32,13 @@ class Engine:
         self.errors.append(text)
 
     def update_stats(self, label, text):
-        self.texts.append(text)
+        if label or not text:  # the status, which comes without a label, depends on how long things take
+            self.texts.append(text)
 
 
 def end_at(event):
-    """In place of relief.render: prepares until an event, and then is stopped."""
-    def render(scene, progress, **settings):
+    """In place of LiveRenders.render: prepares until an event, and then is stopped."""
+    def render(*arguments):
         event.wait(60)
         raise relief.Error("the render was stopped before every pixel had a sample", kind="failed")
     return render
@@ -71,7 +73,7 @@ class View(BlenderTest):
             if self.viewport._job is None and not self.viewport._factors:
                 break
             time.sleep(0.02)
-        return self.drawn[-1]
+        return self.drawn[-1] if self.drawn else None
 
     def test_a_coarse_picture_comes_before_the_fine_one(self):
         self.viewport.update(self.make_context(), self.depsgraph)
@@ -100,6 +102,111 @@ class View(BlenderTest):
         with mock.patch.object(viewport_module, "has_changed", return_value=True):
             self.viewport.update(context, self.depsgraph)
 
+    # What is kept
+
+    def follow(self, change):
+        """What Blender itself would say after a change, drawn."""
+        def update(scene, depsgraph):
+            self.depsgraph = depsgraph
+            self.viewport.update(self.make_context(), depsgraph)
+        bpy.app.handlers.depsgraph_update_post.append(update)
+        self.addCleanup(lambda: update in bpy.app.handlers.depsgraph_update_post and
+                        bpy.app.handlers.depsgraph_update_post.remove(update))
+        change()
+        bpy.context.view_layer.update()
+        bpy.app.handlers.depsgraph_update_post.remove(update)
+        self.depsgraph = bpy.context.evaluated_depsgraph_get()
+        return self.draw_until_done(self.make_context())
+
+    def begin(self):
+        """Two objects, drawn. How many surfaces that took."""
+        self.other = make_grid(3)
+        self.other.location = 0, 0, 1
+        self.other.scale = 0.3, 0.3, 0.3
+        subdivide(self.other, "CATMULL_CLARK", 1)
+        self.depsgraph = bpy.context.evaluated_depsgraph_get()
+        self.viewport.update(self.make_context(), self.depsgraph)
+        self.draw_until_done(self.make_context())
+        self.follow(lambda: setattr(self.other, "hide_render", True))  # all that making them has changed is told now
+        return self.viewport._renders.made_surfaces
+
+    def move(self, ob, x):
+        ob.location.x = x
+
+    def test_nothing_is_prepared_again_for_views_transforms_lights_and_materials(self):
+        subdivide(self.grid, "CATMULL_CLARK", 1, adaptive=True)
+        made = self.begin()
+        self.draw_until_done(self.make_context(0.5))
+        before = self.drawn[-1]
+        for x in (0.3, 0.6):
+            self.follow(lambda: self.move(self.other, x))
+        self.assertGreater(np.abs(before - self.drawn[-1]).mean(), 0.001)
+        light = add_light("SUN", (3, -2, 4), energy=3.0)
+        self.follow(lambda: setattr(light.data, "energy", 1.0))
+        roughness = self.grid.active_material.node_tree.nodes["Principled BSDF"].inputs["Roughness"]
+        self.follow(lambda: setattr(roughness, "default_value", 0.2))
+        self.assertEqual(self.viewport._renders.made_surfaces, made)
+        self.assertEqual(self.engine.errors, [])
+
+    def test_a_changed_mesh_is_exported_and_prepared_alone(self):
+        made = self.begin()
+
+        def change():
+            self.grid.data.vertices[0].co.z += 1
+            self.grid.data.update()
+        before = self.drawn[-1]
+        with mock.patch.object(mesh_arrays, "read_mesh", wraps=mesh_arrays.read_mesh) as read:
+            after = self.follow(change)
+        self.assertEqual(read.call_count, 1)
+        self.assertEqual(self.viewport._renders.made_surfaces, made + 1)
+        self.assertGreater(np.abs(before - after).mean(), 0.001)
+
+    def test_a_cage_below_other_modifiers_is_prepared_once(self):
+        bend = self.grid.modifiers.new("bend", "SIMPLE_DEFORM")
+        subdivide(self.grid, "CATMULL_CLARK", 1)
+        made = self.begin()
+        for x in (0.1, 0.2):
+            self.follow(lambda: self.move(self.grid, x))
+        self.assertEqual(self.viewport._renders.made_surfaces, made)
+        self.follow(lambda: setattr(bend, "angle", 1.0))
+        self.assertEqual(self.viewport._renders.made_surfaces, made + 1)
+
+    def test_a_cage_that_is_named_as_changed_and_is_the_same_is_prepared_once(self):
+        """As Blender 5 names those of displaced materials, when the material changes."""
+        subdivide(self.grid, "CATMULL_CLARK", 1)
+        made, follow = self.begin(), self.viewport._parts.follow
+        update = types.SimpleNamespace(id=self.grid, is_updated_geometry=True)
+        with mock.patch.object(self.viewport._parts, "follow", lambda depsgraph: follow(
+                types.SimpleNamespace(scene=depsgraph.scene, updates=[update]))):
+            with mock.patch.object(mesh_arrays, "read_mesh", wraps=mesh_arrays.read_mesh) as read:
+                self.follow(lambda: self.move(self.grid, 0.2))
+        self.assertEqual(read.call_count, 1)
+        self.assertEqual(self.viewport._renders.made_surfaces, made)
+
+    def test_an_object_that_comes_is_prepared_alone(self):
+        made = self.begin()
+        self.follow(lambda: make_grid(4))
+        self.assertEqual(self.viewport._renders.made_surfaces, made + 1)
+        self.follow(lambda: bpy.data.objects.remove(self.other))
+        self.assertEqual(self.viewport._renders.made_surfaces, made + 1)
+
+    def test_other_fixed_settings_prepare_all(self):
+        made = self.begin()
+        self.follow(lambda: setattr(bpy.context.scene.relief, "viewport_pixel_error", 3.0))
+        self.viewport._key = None
+        self.draw_until_done(self.make_context())
+        self.assertEqual(self.viewport._renders.made_surfaces, made)
+        self.assertEqual(self.engine.errors, [])
+
+    def test_a_stopped_preparation_is_begun_again(self):
+        with mock.patch.object(RenderJob, "_on_progress", return_value=False):
+            with mock.patch.object(LiveJob, "is_cancelled", True):
+                self.viewport.update(self.make_context(), self.depsgraph)
+                self.draw_until_done(self.make_context())
+        self.viewport._key = None
+        self.assertEqual(self.draw_until_done(self.make_context()).shape, (60, 80, 4))
+        self.assertEqual(self.engine.errors, [])
+
     # Faults
 
     def test_a_fault_of_the_export_is_shown_once_and_tried_again_when_something_changes(self):
@@ -123,7 +230,7 @@ class View(BlenderTest):
     def test_a_fault_of_the_renderer_is_shown_and_the_last_picture_is_not(self):
         self.viewport.update(self.make_context(), self.depsgraph)
         self.draw_until_done(self.make_context())
-        with mock.patch.object(relief, "render", side_effect=relief.Error("no such device")) as render:
+        with mock.patch.object(LiveRenders, "render", side_effect=relief.Error("no such device")) as render:
             self.change(self.make_context())
             self.wait_for_fault(self.make_context())
             self.drawn.clear()
@@ -179,7 +286,7 @@ class View(BlenderTest):
     def test_a_new_view_does_not_wait_for_preparation_and_prepares_nothing_beside_it(self):
         may_end = threading.Event()
         self.addCleanup(may_end.set)
-        with mock.patch.object(relief, "render", side_effect=end_at(may_end)) as render:
+        with mock.patch.object(LiveRenders, "render", side_effect=end_at(may_end)) as render:
             self.viewport.update(self.make_context(), self.depsgraph)
             start = time.monotonic()
             for turn in (0, 0.1, 0.2, 0.3):
@@ -198,7 +305,7 @@ class View(BlenderTest):
         self.draw_until_done(context)
         dof = bpy.context.scene.camera.data.dof
         dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 1.0, 0.01
-        with mock.patch.object(relief, "render", wraps=relief.render) as render:
+        with mock.patch.object(self.viewport._renders, "render", wraps=self.viewport._renders.render) as render:
             self.draw_until_done(context)
         self.assertEqual(render.call_count, 2)
 
@@ -208,14 +315,14 @@ class View(BlenderTest):
 
         def view(engine, depsgraph):
             viewport = engine._find_viewport()
-            viewport._job = RenderJob(relief.Scene(), {})
+            viewport._job = LiveJob(LiveRenders(), relief.Scene(), {})
             viewport._job.on_news = viewport_module.make_redraw(viewport._engine)
             jobs.append(viewport._job)
             gone.append(viewport._engine)
         bpy.context.scene.render.engine = "RELIEF"
         gc.disable()
         self.addCleanup(gc.enable)
-        with mock.patch.object(relief, "render", end_at(may_end)), mock.patch.object(ReliefEngine, "render", view):
+        with mock.patch.object(LiveRenders, "render", end_at(may_end)), mock.patch.object(ReliefEngine, "render", view):
             bpy.ops.render.render()
             self.assertIsNone(gone[0]())
             self.assertTrue(jobs[0].is_cancelled)
