@@ -14,6 +14,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "answers.h"
+#include "base/stop_request.h"
 #include "exit_gate.h"
 #include "parts.h"
 #include "relief/error.h"
@@ -128,7 +129,8 @@ class LiveScene {
 
     Scene load(GivenScene&& given, const nb::object& on_progress) {
         Scene scene;
-        const auto work = [&](RenderObserver&) {
+        const auto work = [&](RenderObserver& observer) {
+            const StopScope scope([&] { return observer.is_cancelled(); });
             if (shot_ && given.folder == folder_)
                 shot_->change_text(given.text, std::move(given.assets));
             else
@@ -136,7 +138,11 @@ class LiveScene {
             folder_ = given.folder;
             scene = shot_->load(find_frame(*shot_, given.frame));
         };
-        run_step(work, on_progress, 0);
+        try {
+            run_step(work, on_progress, 0);
+        } catch (const StopRequest&) {
+            throw Error(ErrorKind::failed, {"the reading of the scene was stopped", "LiveScene", ""});
+        }
         return scene;
     }
 

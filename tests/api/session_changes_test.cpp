@@ -1,4 +1,5 @@
 // Sessions whose changes are cancelled, fail, or make other lists of meshes.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/stop_request.h"
 #include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
 #include "image/texel_layout.h"
@@ -183,6 +184,7 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
     Kept<Texture>& cached = textures_[key];
     cached.frame = frame_;
     if (cached.value) return cached.value;
+    stop_if_asked();
     if (!given) cached.stamp = read_stamp(path);
     auto texture = std::make_shared<Texture>(given ? *given : read_texture(path));
     return cached.value = decode(std::move(texture), use, channel, space);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/stop_request.h"
 #include "math/vec_double.h"
 #include "surface/map/texels.h"
 #include "surface/mesh/limit_outlines.h"
@@ -18,6 +19,7 @@ using Point = UvIslands::Point;
 constexpr uint32_t kProbes = 64;         ///< a side: texels looked at before anything is worked out
 constexpr uint32_t kFewestAlike = 40;    ///< of them, about one in a hundred: less is no background
 constexpr double kCoverTolerance = 1e-3; ///< texels
+constexpr size_t kFacesALook = 1024;     ///< at whether the work is to stop
 constexpr double kFarthest = 1e9;        ///< texels; beyond, uvs name no texel
 
 bool is_near_edge(const Point& a, const Point& b, const Point& p) {
@@ -87,6 +89,7 @@ void UvIslands::add(const Mesh& mesh) {
 }
 
 void UvIslands::add_face(std::span<const Vec2f> uvs, Ids& ids, std::vector<Edge>& edges) {
+    if (starts_.size() % kFacesALook == 0) stop_if_asked();
     const size_t size = uvs.size();
     Point middle{};
     for (const Vec2f& uv : uvs)
