@@ -1,4 +1,5 @@
 """Images of Blender as files or as arrays with row 0 at the top, linear Rec.709 unless they are data."""
+import hashlib
 import os
 from typing import NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 from .exr_header import is_plain_exr
 from .node_tree import NotExpressible
 
+EXR_MAGIC = b"\x76\x2f\x31\x01"
 DATA_SPACES = {"Non-Color", "Raw", "Generic Data"}
 LINEAR_SPACES = DATA_SPACES | {"Linear Rec.709", "Linear", "scene_linear"}
 
@@ -22,17 +24,31 @@ def is_data(image):
 
 
 def find_file(image):
-    """The file of an image that Relief reads with the same values itself, or None. Tiles keep <UDIM>."""
-    is_packed = image.packed_file is not None or len(image.packed_files) > 0
-    if image.source not in {"FILE", "TILED"} or is_packed or image.is_dirty:
+    """The file of an image that Relief reads with the same values itself, or None. Tiles keep <UDIM>. One that is packed is
+    written to Blender's temporary folder: that costs less memory than its texels, which Blender need not read then."""
+    if image.source not in {"FILE", "TILED"} or image.is_dirty or image.colorspace_settings.name not in LINEAR_SPACES:
         return None
-    if image.colorspace_settings.name not in LINEAR_SPACES:
-        return None
+    if len(image.packed_files) > 0:
+        return _unpack(image) if image.source == "FILE" and len(image.packed_files) == 1 else None
     path = bpy.path.abspath(image.filepath, library=image.library)
     if "##" in path or image.source == "FILE" and any(sign in path.lower() for sign in ("<udim>", "<uvtile>")):
         return None  # Relief would put the number of a frame or of a tile in its place
     first = path.replace("<UDIM>", str(image.tiles[0].number)) if image.source == "TILED" else path
     return os.path.abspath(path) if is_plain_exr(first) else None
+
+
+def _unpack(image):
+    """A file with what is packed into an image, or None. Its name is that of its content, so that it is written once."""
+    data = image.packed_file.data
+    if not data.startswith(EXR_MAGIC):
+        return None
+    name = hashlib.blake2b(data, digest_size=16).hexdigest()
+    path = os.path.join(bpy.app.tempdir, f"relief-{name}.exr")
+    if not os.path.exists(path):
+        with open(f"{path}.part", "wb") as file:
+            file.write(data)
+        os.replace(f"{path}.part", path)
+    return path if is_plain_exr(path) else None
 
 
 class MissingImage(NotExpressible):
@@ -80,7 +96,8 @@ def _fetch(image):
     texels = np.empty(width * height * image.channels, np.float32)
     image.pixels.foreach_get(texels)
     if not image.is_float:
-        texels = np.rint(texels * 255).astype(np.uint8)
+        np.multiply(texels, 255, out=texels)
+        texels = np.rint(texels, out=texels).astype(np.uint8)
     return Pixels(texels.reshape(height, width, image.channels), is_data(image), image.colorspace_settings.name)
 
 
@@ -104,6 +121,8 @@ def _decode(pixels, name, report):
     height, width, channels = pixels.texels.shape
     texels = pixels.texels[::-1]
     is_float = texels.dtype != np.uint8
+    if is_float and channels == 4:
+        return texels
     rgba = np.ones((height, width, 4), np.float32)
     rgba[..., :3] = texels[..., :3] if channels >= 3 else texels[..., :1]
     if channels in (2, 4):

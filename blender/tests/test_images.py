@@ -1,10 +1,14 @@
 """Images: those that cannot be read, tiles, and what reading leaves in the file that is open."""
 from support import BlenderTest, displace, main, make_grid, make_hook, make_image, make_material  # first: finds the add-on
+from unittest import mock
+
 import bpy
 import numpy as np
 from relief_blender import images
 from relief_blender.report import Report
 from relief_blender.scene_export import SceneExport
+
+import relief
 
 
 class Images(BlenderTest):
@@ -172,6 +176,26 @@ class Images(BlenderTest):
         self.assertEqual(len(cache._kept), 2)
         cache.forget_unused()
         self.assertEqual(len(cache._kept), 0)
+
+
+class Packed(BlenderTest):
+    def test_a_packed_exr_is_read_as_a_file_and_written_once(self):
+        texels = np.linspace(-1, 2, 6 * 5 * 3, dtype=np.float32).reshape(6, 5, 3)
+        image = make_image("packed", texels)
+        file = images.find_file(image)
+        np.testing.assert_array_equal(relief._relief.read_texture(file)[..., :3], texels)
+        with mock.patch.object(images, "open", side_effect=OSError, create=True):
+            self.assertEqual(images.find_file(image), file)
+        self.assertNotEqual(images.find_file(make_image("other", 2 * texels)), file)
+
+    def test_other_packed_images_are_read_by_blender(self):
+        bytes_image = bpy.data.images.new("bytes", 4, 4, is_data=True)
+        bytes_image.pack()
+        painted = make_image("painted", np.zeros((4, 4, 3), np.float32))
+        painted.pixels[0] = 1.0
+        self.assertTrue(painted.is_dirty)
+        for image in (bytes_image, painted):
+            self.assertIsNone(images.find_file(image))
 
 
 if __name__ == "__main__":
