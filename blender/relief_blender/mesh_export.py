@@ -148,7 +148,7 @@ class MeshExport:
                    "it is subdivided by its Levels")
             return None
         subdivision.report_differences(modifier, report)
-        keys = subdivision.make_keys(modifier, adaptive, subdivision.find_level(modifier, self._depsgraph), len(arrays.sizes),
+        keys = subdivision.make_keys(modifier, adaptive, subdivision.find_level(modifier, self._depsgraph),
                                      material.displacement is not None)
         creases = subdivision.read_creases(modifier, cage, arrays, report)
         if creases is not None:

@@ -5,8 +5,7 @@ import numpy as np
 
 from . import mesh_arrays, mesh_repair
 
-SHARP = 10                # sharpness of what stays a corner for ever
-ADAPTIVE_FACES = 1 << 20  # about how many quads an adaptively subdivided surface without a map gets
+SHARP = 10  # sharpness of what stays a corner for ever
 
 
 def find_modifier(evaluated, depsgraph):
@@ -63,18 +62,14 @@ def cage_of(evaluated, modifier, depsgraph):
         modifier.show_render, modifier.show_viewport = shown
 
 
-def choose_level(levels, adaptive, face_count, is_displaced):
-    """`level` of Relief. A displaced surface gets its detail from the picture; its patches need few levels."""
-    most = 3 if is_displaced else 6
-    level = most if adaptive else min(levels, most if is_displaced else 8)
-    while level > 1 and adaptive and face_count * 4 ** level > ADAPTIVE_FACES:
-        level -= 1
-    return level
+def choose_level(levels, adaptive, is_displaced):
+    """The key `level`: adaptive and displaced surfaces get the patches that the picture needs, others the modifier's levels."""
+    return "auto" if adaptive or is_displaced else min(levels, 8)
 
 
-def make_keys(modifier, adaptive, levels, face_count, is_displaced):
+def make_keys(modifier, adaptive, levels, is_displaced):
     """The key `subdivision` of a mesh. levels: see find_level()."""
-    return {"scheme": "catmark", "level": choose_level(levels, adaptive, face_count, is_displaced),
+    return {"scheme": "catmark", "level": choose_level(levels, adaptive, is_displaced),
             "uv": "linear" if modifier.uv_smooth == "NONE" else "smooth",
             "boundary": "edge-only" if modifier.boundary_smooth == "ALL" else "edge-and-corner",
             "creases": bool(modifier.use_creases)}
