@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "base/parallel.h"
 #include "surface/map/displacement_map.h"
 
 namespace relief {
@@ -38,12 +39,33 @@ class SplineCache {
     std::map<std::pair<const Texture*, SplineForm>, Entry> entries_;
 };
 
-/// Of a tile; its texture becomes the one that surfaces read.
-void prepare_map(const Displacement& displacement, MapTile& tile, const std::vector<const Mesh*>& meshes,
-                 SplineCache& splines, EditableScene& prepared) {
+/// Finds the gutters of all tiles of displacements that are not as before, per displacement and tile.
+std::vector<std::vector<GutterFill>> find_gutters(const Scene& scene, const SameParts& same) {
+    std::vector<std::vector<GutterFill>> gutters(scene.displacements.size());
+    std::vector<std::pair<uint32_t, size_t>> wanted;
+    for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
+        const Displacement& displacement = scene.displacements[k];
+        gutters[k].resize(displacement.tiles.size());
+        for (size_t tile = 0; tile < displacement.tiles.size() && displacement.dilate && !same.images[k];
+             ++tile)
+            wanted.push_back({k, tile});
+    }
+    parallel_for("gutters", wanted.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+            const auto [number, tile] = wanted[k];
+            const Displacement& displacement = scene.displacements[number];
+            const std::vector<const Mesh*> meshes = list_meshes(scene, number);
+            if (!meshes.empty())
+                gutters[number][tile] = find_gutter(displacement, displacement.tiles[tile], meshes);
+        }
+    });
+    return gutters;
+}
+
+/// Prepares the map of a tile with its gutter; the tile's texture becomes the one that surfaces read.
+void prepare_map(const Displacement& displacement, MapTile& tile, GutterFill gutter,
+                 const std::vector<const Mesh*>& meshes, SplineCache& splines, EditableScene& prepared) {
     const void* source = tile.texture.get();
-    GutterFill gutter;
-    if (displacement.dilate && !meshes.empty()) gutter = find_gutter(displacement, tile, meshes);
     if (!gutter.copies.empty()) {
         auto filled = std::make_shared<Texture>(*tile.texture);
         gutter.apply(*filled);
@@ -108,14 +130,16 @@ void prepare_textures(std::vector<Material>& materials) {
 
 void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before, EditableScene& prepared) {
     SplineCache splines;
+    std::vector<std::vector<GutterFill>> gutters = find_gutters(scene, same);
     for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
         Displacement& displacement = scene.displacements[k];
         const std::vector<const Mesh*> meshes = list_meshes(scene, k);
         if (same.images[k])
             take_over(*before, same.old_displacements[k], displacement.tiles, prepared);
         else
-            for (MapTile& tile : displacement.tiles)
-                prepare_map(displacement, tile, meshes, splines, prepared);
+            for (size_t tile = 0; tile < displacement.tiles.size(); ++tile)
+                prepare_map(displacement, displacement.tiles[tile], std::move(gutters[k][tile]), meshes,
+                            splines, prepared);
         // What the surfaces get are coefficients now.
         if (is_smooth(displacement.filter) && !meshes.empty())
             displacement.filter = MapFilter::bspline, displacement.dequantize = false;
