@@ -35,8 +35,10 @@ def find_view(context, scene, factor=1):
 
 
 def make_settings(scene, view, factor):
+    """Of a picture of `factor` pixels a side of each: the geometry is that of the picture of all pixels."""
     own = scene.relief
-    return {"size": view.size, "crop": view.crop, "spp": 1 if factor > 1 else own.viewport_samples,
+    return {"size": view.size, "detail_height": view.size[1] * factor, "crop": view.crop,
+            "spp": 1 if factor > 1 else own.viewport_samples,
             "bounces": own.viewport_bounces, "pixel_error": own.viewport_pixel_error, "seed": own.seed,
             "engine": own.engine, "threads": find_threads(scene.render), "clamp_indirect": own.clamp_indirect,
             "background": "transparent" if scene.render.film_transparent else None}

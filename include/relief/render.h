@@ -84,6 +84,9 @@ struct ImageSettings {
     /// no more than this to any component. Fewer bright specks, and less light; 0: all of it. The default
     /// is that of Cycles.
     float clamp_indirect = 10;
+    /// Rows of the picture that levels of detail are chosen for; 0: `height`. A coarse preview that gets the
+    /// height of the picture after it has the same geometry, which is then prepared once.
+    int detail_height = 0;
     uint32_t seed = 0;
     /// Linear colour that camera rays see where they leave the scene and meet no visible light; nullopt: the
     /// environment. Black makes films transparent: colours are then premultiplied by A. Bounces see the

@@ -165,7 +165,8 @@ class LiveScene:
 
     def change_view(self, camera: Optional[Camera] = None, progress: Union[bool, Callback, None] = None, **settings: Any) -> None:
         """The next picture is of another camera (None: the same), or has other settings of the image: size, spp, bounces, seed,
-        noise, time_limit, clamp_indirect, background, crop, first_sample; None sets one back. Nothing is prepared again."""
+        noise, time_limit, clamp_indirect, detail_height, background, crop, first_sample; None sets one back. Nothing is prepared
+        again but surfaces that a nearer view asks for in other patches."""
         keywords = self._merge(settings, "change_view")
         parsed = None
         if camera is not None:

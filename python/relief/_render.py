@@ -94,6 +94,7 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
            device: Optional[int] = None, threads: Optional[int] = None, layers: Union[Sequence[str], str, None] = None,
            crop: Optional[Sequence[int]] = None, background: Union[str, Sequence[float], None] = None,
            noise: Optional[float] = None, time_limit: Optional[float] = None, clamp_indirect: Optional[float] = None,
+           detail_height: Optional[int] = None,
            level: Union[int, str, None] = None, pixel_error: Optional[float] = None, mode: Optional[str] = None,
            denoise: Union[bool, Path] = False, check_maps: bool = True, first_sample: Optional[int] = None,
            cache_mb: Optional[int] = None, frame: Optional[float] = None, progress: Union[bool, Callback, None] = None,
@@ -106,6 +107,8 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     crop: x0, y0, x1, y1, half open. background: linear (r, g, b) behind the objects, or "transparent".
     noise: no more samples where the error is below this share of the brightness. time_limit: seconds, preparation and
     denoising included. clamp_indirect: the most that one path adds to a colour after its first bounce, 10; 0: no limit.
+    detail_height: rows of the picture that levels of detail are chosen for, its own if not given; previews with the height of the
+    picture after them share its geometry.
     level: "auto", or 2^level cells a side of each patch. pixel_error: size of cells aimed at, pixels.
     mode: "direct" or "tessellated". denoise: True, or the library or folder of Open Image Denoise 2. first_sample: of a
     range of samples. check_maps: warn of maps whose values speak against what is said of them; a few hundredths of a second a
@@ -124,7 +127,8 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     none, or Ctrl-C comes twice."""
     given = {"size": size, "spp": spp, "bounces": bounces, "seed": seed, "engine": engine, "device": device,
              "threads": threads, "layers": layers, "crop": crop, "background": background, "noise": noise,
-             "time_limit": time_limit, "clamp_indirect": clamp_indirect, "level": level, "pixel_error": pixel_error,
+             "time_limit": time_limit, "clamp_indirect": clamp_indirect, "detail_height": detail_height,
+             "level": level, "pixel_error": pixel_error,
              "mode": mode, "first_sample": first_sample, "cache_mb": cache_mb, **more}
     keywords = choose_cache({key: value for key, value in given.items() if value is not None})
     entries = make_entries(keywords)
@@ -139,7 +143,8 @@ def render(scene: Renderable, *, size: Optional[tuple[int, int]] = None, spp: Op
     return finish(answer, entries)
 
 
-VIEW_SETTINGS = {"size", "spp", "bounces", "seed", "noise", "time_limit", "clamp_indirect", "background", "crop", "first_sample"}
+VIEW_SETTINGS = {"size", "spp", "bounces", "seed", "noise", "time_limit", "clamp_indirect", "detail_height",
+                 "background", "crop", "first_sample"}
 
 
 class Session:
@@ -157,8 +162,8 @@ class Session:
 
     def change_view(self, camera: Optional[Camera] = None, **settings: Any) -> None:
         """The next picture is of another camera (None: the same), or has other settings of the image: size, spp, bounces, seed,
-        noise, time_limit, clamp_indirect, background, crop, first_sample; None sets one back. All of it is traced anew; trees
-        stay where the levels of surfaces do."""
+        noise, time_limit, clamp_indirect, detail_height, background, crop, first_sample; None sets one back. All of it is traced
+        anew; trees stay where the levels of surfaces do."""
         others = sorted(set(settings) - VIEW_SETTINGS)
         if others:
             raise TypeError(f"change_view() changes the camera and the image, not {', '.join(others)}: begin another Session")

@@ -80,6 +80,10 @@ constexpr Keyword kKeywords[] = {
      [](const Argument& v, RenderSettings& s) { s.image.noise = float(v.number(0, 1)); }},
     {"time_limit", "image.time_limit_s", false,
      [](const Argument& v, RenderSettings& s) { s.image.time_limit_s = v.number(0, 1e9); }},
+    {"detail_height", "image.detail_height", false,
+     [](const Argument& v, RenderSettings& s) {
+         s.image.detail_height = int(v.integer(0, kMaxPictureSize));
+     }},
     {"clamp_indirect", "image.clamp_indirect", false,
      [](const Argument& v, RenderSettings& s) { s.image.clamp_indirect = float(v.number(0, 1e9)); }},
     {"background", "image.background", false, read_background},

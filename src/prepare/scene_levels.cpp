@@ -12,8 +12,8 @@ LevelFieldConfig make_level_config(const Camera& camera, const RenderSettings& s
     config.fixed_level = settings.surface.level == kAutoLevel ? -1 : settings.surface.level;
     config.pixel_error = settings.surface.pixel_error;
     config.camera = camera.from;
-    config.pixel_angle =
-        float(2 * std::tan(camera.fov_degrees * std::numbers::pi / 360) / settings.image.height);
+    const int rows = settings.image.detail_height > 0 ? settings.image.detail_height : settings.image.height;
+    config.pixel_angle = float(2 * std::tan(camera.fov_degrees * std::numbers::pi / 360) / rows);
     return config;
 }
 

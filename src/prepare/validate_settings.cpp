@@ -73,6 +73,9 @@ void validate_settings(const RenderSettings& s) {
             fmt::format("0 to {}", kMaxBounces));
     require(s.image.clamp_indirect >= 0 && std::isfinite(s.image.clamp_indirect),
             "the limit of indirect light is out of range", "radiance, at least 0 (no limit)");
+    require(s.image.detail_height >= 0 && s.image.detail_height <= kMaxPictureSize,
+            "the height that detail is chosen for is out of range",
+            fmt::format("0 (that of the picture) to {}", kMaxPictureSize));
     require(s.device.threads >= 0 && s.device.threads <= kMaxThreads, "the number of threads is out of range",
             "0 (all cores) to 4096");
     require(s.device.index >= -1, "the device is out of range",
