@@ -166,7 +166,7 @@ int convert_surface(const ConvertOptions& options) {
         refuse(options.to_given.front() + " goes with a map to be written", options.output, "");
     const bool is_mesh = get_kind(options.input) == FileKind::mesh;
     if (options.subdivision_level && !options.subdivision)
-        refuse("--subdivision-level says nothing without a scheme", options.input, "--subdivision catmark");
+        refuse("--subdivision-level needs a subdivision scheme", options.input, "--subdivision catmark");
     if (is_mesh && options.displacement_map.empty() && !options.subdivision) {
         if (options.level || !options.from_given.empty())
             refuse((options.level ? std::string("--level") : options.from_given.front()) +

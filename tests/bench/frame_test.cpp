@@ -209,11 +209,12 @@ TEST_F(FramePrograms, pass_only_options_that_old_commands_know) {
     };
     const FrameRun run = make_program(place(kWrite, folder)).render(make_task());
     EXPECT_EQ(run.statistics["time_s"]["render"], 2.0);
-    EXPECT_NE(read_words().find(
-                  place("render FOLDER/scene.json -q --engine cpu --isa avx2 --size 8x4 --spp 3 --bounces 4 "
-                        "--threads 2 --seed 7 -o FOLDER/a.exr --stats FOLDER/own/statistics.json",
-                        folder)),
-              std::string::npos)
+    EXPECT_NE(
+        read_words().find(place(
+            "render FOLDER/scene.json -q --engine cpu --isa avx2 --size 8x4 --spp 3 --bounces 4 "
+            "--threads 2 --clamp-indirect 1e9 --seed 7 -o FOLDER/a.exr --stats FOLDER/own/statistics.json",
+            folder)),
+        std::string::npos)
         << read_words();
     make_program(place(kWrite, folder), EngineKind::vulkan).render(make_task());
     EXPECT_NE(read_words().find("--engine vulkan --size"), std::string::npos) << read_words();

@@ -245,7 +245,7 @@ TEST_F(Usage, mesh_options_do_not_go_with_a_scene_file) {
 }
 
 TEST_F(Usage, a_subdivision_level_needs_a_scheme) {
-    expect_refused({"render", "plane.obj", "--subdivision-level", "2"}, "without a scheme");
+    expect_refused({"render", "plane.obj", "--subdivision-level", "2"}, "needs a subdivision scheme");
     expect_refused({"render", "plane.obj", "--subdivision", "catmark", "--subdivision-level", "9"},
                    "from 0 to 8");
 }

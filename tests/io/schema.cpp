@@ -144,7 +144,9 @@ TEST(Schema, has_the_limits_of_the_library) {
     EXPECT_EQ(render.at("spp").at("maximum"), kMaxSamples);
     EXPECT_EQ(render.at("bounces").at("maximum"), kMaxBounces);
     EXPECT_EQ(
-        at(schema, "/properties/meshes/additionalProperties/properties/subdivision/properties/level/maximum"),
+        at(schema, "/properties/meshes/additionalProperties/properties/subdivision/properties/level/oneOf")
+            .at(0)
+            .at("maximum"),
         kMaxSubdivisionLevel);
     EXPECT_EQ(render.at("seed").at("maximum"), 4294967295u);
 }

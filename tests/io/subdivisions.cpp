@@ -33,6 +33,17 @@ TEST_F(Subdivisions, every_field_is_read) {
     EXPECT_EQ(parse(R"({"scheme": "bilinear", "creases": false})").meshes.at(0).subdivision, defaults);
 }
 
+TEST_F(Subdivisions, levels_are_automatic_unless_a_number_is_given) {
+    EXPECT_EQ(parse(R"({"scheme": "catmark"})").meshes.at(0).subdivision.level, kAutoSubdivisionLevel);
+    EXPECT_EQ(parse(R"({"scheme": "catmark", "level": "auto"})").meshes.at(0).subdivision.level,
+              kAutoSubdivisionLevel);
+    EXPECT_EQ(parse(R"({"scheme": "catmark", "level": 0})").meshes.at(0).subdivision.level, 0);
+    EXPECT_HAS(error_of(R"({"scheme": "catmark", "level": "fine"})"), "meshes.plane.subdivision.level");
+    EXPECT_HAS(error_of(R"({"scheme": "catmark", "level": "fine"})"),
+               "write \"auto\", or a level from 0 to 8");
+    EXPECT_HAS(error_of(R"({"scheme": "catmark", "level": -1})"), "meshes.plane.subdivision.level");
+}
+
 TEST_F(Subdivisions, wrong_values_are_named_with_their_path) {
     EXPECT_HAS(error_of(R"({"scheme": "catmrk"})"), "catmark");
     EXPECT_HAS(error_of(R"({"level": 2})"), "scheme");
@@ -49,7 +60,8 @@ TEST_F(Subdivisions, wrong_values_are_named_with_their_path) {
 }
 
 TEST_F(Subdivisions, a_saved_scene_loads_as_the_same_scene) {
-    for (const char* text : {R"({"scheme": "catmark", "level": 0, "creases": [[0, 1, 0.1], [3, 3, 10]]})",
+    for (const char* text : {R"({"scheme": "catmark", "level": "auto"})",
+                             R"({"scheme": "catmark", "level": 0, "creases": [[0, 1, 0.1], [3, 3, 10]]})",
                              R"({"scheme": "bilinear", "uv": "linear", "creases": false})",
                              R"({"scheme": "none", "creases": [[1, 2, 3]]})"}) {
         const Scene scene = parse(text);
