@@ -71,6 +71,8 @@ class Session {
     /// engine which failed is made anew by the next call. Error{failed} where `observer` cancels: another
     /// change has to come then. The picture is that of a fresh session bit for bit; where is_far_away(), up
     /// to rounding.
+    /// Subdivision surfaces with automatic levels are made anew if the view needs other patches; until then
+    /// an edit of their map leaves their patches as they were.
     void change_view(const Camera& camera, const ImageSettings& image, uint64_t scene_hash = 0,
                      RenderObserver* observer = nullptr);
 

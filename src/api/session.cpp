@@ -144,8 +144,7 @@ struct Session::Implementation {
         const Missing before = std::exchange(missing, Missing::view);
         const std::vector<SurfaceChange> changes = editor->change_view(camera, changed, scene_hash);
         missing = Missing::nothing;
-        return before == Missing::nothing &&
-               follow([&] { return show_changes(changes, changed.image); });
+        return before == Missing::nothing && follow([&] { return show_changes(changes, changed.image); });
     }
 
     bool show_changes(const std::vector<SurfaceChange>& changes, const ImageSettings& image) {

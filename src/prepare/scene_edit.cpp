@@ -315,7 +315,10 @@ std::vector<SurfaceChange> SceneEditor::apply(const CheckedEdit& edit) {
 std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const RenderSettings& settings,
                                                     uint64_t scene_hash) {
     PreparedScene& scene = *scene_;
-    const std::vector<uint32_t> remade = follow_view(parts_, make_level_config(camera, settings));
+    // What a change before this one, which was stopped, made but did not finish is finished now.
+    for (const uint32_t surface : follow_view(parts_, make_level_config(camera, settings)))
+        if (std::ranges::find(remade_, surface) == remade_.end()) remade_.push_back(surface);
+    const std::vector<uint32_t>& remade = remade_;
     for (const uint32_t surface : remade) {
         update_reach(scene, surface);
         for (Instance& instance : scene.instances)
@@ -338,6 +341,7 @@ std::vector<SurfaceChange> SceneEditor::change_view(const Camera& camera, const 
         scene.surfaces[surface].mips = choose_scene_mips(scene, surface);
         changes.push_back({surface, {}, {}, true});
     }
+    remade_.clear();
     for (SurfaceChange& change : changes) change.looks_different = change.is_changed;
     scene.may_enclose_camera = may_enclose_camera(scene);
     hash_ = scene_hash != 0 ? scene_hash : hash_view(hash_, camera);

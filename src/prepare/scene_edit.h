@@ -28,8 +28,8 @@ class CheckedEdit {
 class SceneEditor {
   public:
     /// As prepare_scene(). With SessionUse::edits maps are copied, as they may be shared; without apply() is
-    /// not to be called. With SessionUse::scenes meshes are kept, and change_scene() may be called.
-    /// Error{usage} for tessellated surfaces.
+    /// not to be called. Meshes whose subdivision the view decides are kept; with SessionUse::scenes all
+    /// meshes are, and change_scene() may be called. Error{usage} for tessellated surfaces.
     SceneEditor(Scene scene, const RenderSettings& settings, SessionUse use = SessionUse::edits);
 
     /// Changed by apply(), in place: no rays may be traced in it then.
@@ -84,6 +84,7 @@ class SceneEditor {
     uint64_t hash_;
     SceneParts parts_; ///< without what only SessionUse::scenes needs, unless it is that
     std::shared_ptr<PreparedScene> scene_;
+    std::vector<uint32_t> remade_; ///< surfaces that a change of the view has made, until it is done
     std::vector<std::shared_ptr<MipChain>> mips_;    ///< of PreparedScene::maps
     std::map<const Texture*, EditableMap> textures_; ///< by the texture itself
 };

@@ -28,8 +28,8 @@ struct SceneParts {
     std::vector<Material> materials;          ///< as they were given
     SurfaceNumbers surfaces;
     std::vector<SurfaceRecipe> recipes; ///< per surface
-    uint64_t made_surfaces = 0;  ///< from meshes, of this scene and all before it
-    bool has_old_numbers = true; ///< as SameParts::has_old_numbers(), of this scene and the one before
+    uint64_t made_surfaces = 0;         ///< from meshes, of this scene and all before it
+    bool has_old_numbers = true;        ///< as SameParts::has_old_numbers(), of this scene and the one before
 };
 
 /// Which parts of a scene are those that were there before: a byte each.

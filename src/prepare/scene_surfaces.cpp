@@ -11,6 +11,7 @@
 #include "math/affine.h"
 #include "scene/uv_sets.h"
 #include "surface/map/displacement_map.h"
+#include "surface/map/spline_coefficients.h"
 
 namespace relief {
 
@@ -105,16 +106,23 @@ class SurfaceMaker {
 
   private:
     /// The surface of a key before, if nothing but its map may differ.
-    std::optional<Surface> take(const SurfaceKey& key, SurfaceRecipe& recipe) const {
+    std::optional<Surface> take(const SurfaceKey& key, SurfaceRecipe& recipe) {
         const auto [mesh, displacement, object] = key;
         if (!before_ || !same_.meshes[mesh] || (displacement != kNoIndex && !same_.bases[displacement]))
             return std::nullopt;
         const auto found = before_->surfaces.find(same_.find_old(key));
         if (found == before_->surfaces.end()) return std::nullopt;
         Surface& surface = before_->prepared.scene->surfaces[found->second];
-        if (surface.patch_count() == 0 || !has_uv_sets(surface, scene_.meshes[mesh], recipe.uv_sets)) return std::nullopt;
+        if (surface.patch_count() == 0 || !has_uv_sets(surface, scene_.meshes[mesh], recipe.uv_sets))
+            return std::nullopt;
         const BaseTolerance& made_with = before_->recipes[found->second].tolerance;
         if (!is_same_base(made_with, recipe.tolerance, surface.base_reserve)) return std::nullopt;
+        // Faces are cut by what the map displaces them.
+        if (is_subdivided_by_view(scene_.meshes[mesh]) && displacement != kNoIndex &&
+            !is_same_map(make_displacement_map(scene_.displacements[displacement], recipe.object_from_world,
+                                               pyramids_),
+                         surface.map))
+            return std::nullopt;
         recipe.tolerance = made_with;
         return std::exchange(surface, Surface{});
     }
@@ -168,6 +176,9 @@ Surface remake_surface(const SceneParts& parts, const SurfaceRecipe& recipe, con
     PyramidCache pyramids;
     if (recipe.displacement == kNoIndex) return make_surface(mesh, nullptr, make_context(recipe, pyramids));
     Displacement displacement = parts.displacements[recipe.displacement];
+    // The images of the surface before are coefficients already.
+    if (is_smooth(displacement.filter))
+        displacement.filter = MapFilter::bspline, displacement.dequantize = false;
     for (size_t k = 0; k < before.map.tiles.size(); ++k) {
         displacement.tiles[k].texture = before.map.tiles[k].texture;
         pyramids.keep(before.map.tiles[k].texture, before.map.tiles[k].pyramid);
@@ -242,7 +253,8 @@ std::vector<uint32_t> follow_view(SceneParts& parts, const LevelFieldConfig& con
     }
     std::vector<Surface> made(numbers.size());
     parallel_for("surfaces of another view", numbers.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k) made[k] = remake_surface(parts, recipes[k], surfaces[numbers[k]]);
+        for (size_t k = begin; k < end; ++k)
+            made[k] = remake_surface(parts, recipes[k], surfaces[numbers[k]]);
     });
     // All at the end, so that an error changes nothing.
     for (size_t k = 0; k < numbers.size(); ++k) {

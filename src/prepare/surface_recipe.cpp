@@ -62,7 +62,7 @@ struct MeshView {
                  (find_largest_stretch(place) * find_largest_stretch(mesh_from_world));
     }
 
-    /// Of the camera from a box with so much around it.
+    /// Returns the distance of the camera from a box that is larger by `around` on each side.
     double find_distance(const Box& box, double around) const {
         double sum = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -89,12 +89,21 @@ BaseTolerance choose_base_tolerance(const Mesh& mesh, std::span<const Affine> pl
             smallest = std::min(smallest, view.factor * view.find_distance(part, reach));
         return find_tolerance_exponent(smallest);
     };
-    const double near = kNear * double(length(box.extent()));
+    const double diagonal = double(length(box.extent())), near = kNear * diagonal;
     const bool is_near = std::ranges::any_of(
         views, [&](const MeshView& view) { return view.find_distance(box, reach) < near; });
-    BaseTolerance tolerance{find_smallest(box), {}};
-    if (!is_near) return tolerance;
-    tolerance.exponent = 0;
+    if (!is_near) {
+        // From the ball about the box, so that a camera which goes around the mesh changes nothing.
+        double smallest = std::numeric_limits<double>::infinity();
+        for (const MeshView& view : views) {
+            const double distance = compute_length(view.camera - to_double(box.center()));
+            const double nearest =
+                std::max(distance - diagonal / 2 - reach, view.find_distance(box, reach) / 2);
+            smallest = std::min(smallest, view.factor * nearest);
+        }
+        return {find_tolerance_exponent(smallest), {}};
+    }
+    BaseTolerance tolerance;
     for (const Box& face : find_face_boxes(mesh)) tolerance.of_faces.push_back(int8_t(find_smallest(face)));
     return tolerance;
 }

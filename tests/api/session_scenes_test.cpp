@@ -79,6 +79,21 @@ TEST(SessionScenes, follows_filtered_and_smooth_maps) {
     }
 }
 
+TEST(SessionScenes, follows_surfaces_whose_view_and_map_choose_their_patches) {
+    for (const MapFilter filter : {MapFilter::none, MapFilter::cubic, MapFilter::mip}) {
+        Scene scene = make_session_scene();
+        for (Mesh& mesh : scene.meshes) mesh.subdivision.scheme = SubdivisionScheme::catmark;
+        for (Displacement& displacement : scene.displacements) displacement.filter = filter;
+        std::vector<Change> changes = kChanges;
+        changes.push_back(
+            [](Scene& s) { s.camera.from = s.camera.to + (s.camera.from - s.camera.to) * 0.4f; });
+        changes.push_back([](Scene& s) { s.displacements[0].scale = {0.01f, 0.01f, 0.01f}; });
+        changes.push_back(
+            [](Scene& s) { s.camera.from = s.camera.to + (s.camera.from - s.camera.to) * 6.0f; });
+        expect_follows(scene, make_session_settings(), changes);
+    }
+}
+
 TEST(SessionScenes, needs_no_engine_that_follows) {
     RenderSettings settings = make_session_settings();
     settings.experiment.structure = StructureKind::kdtree;

@@ -1,5 +1,7 @@
 // Pictures of a session after its view changed: those of a fresh scene with that camera, bit for bit.
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +44,82 @@ TEST(SessionView, gives_the_pictures_of_a_fresh_scene) {
     expect_follows_views(make_rough_torus(), settings);
     settings.surface.level = kAutoLevel, settings.surface.lod = LodRule::ray;
     expect_follows_views(make_rough_torus(), settings);
+}
+
+/// The control cage of the torus: faces that are cut where the view asks for it.
+Scene make_smooth_torus(DisplacementSpace space) {
+    Scene scene = make_rough_torus();
+    scene.meshes[0].subdivision.scheme = SubdivisionScheme::catmark;
+    scene.displacements[0].space = space;
+    return scene;
+}
+
+TEST(SessionView, subdivides_as_the_view_asks_for) {
+    for (const auto& [use, filter] :
+         {std::pair(SessionUse::views, MapFilter::none), std::pair(SessionUse::edits, MapFilter::mip),
+          std::pair(SessionUse::edits, MapFilter::cubic), std::pair(SessionUse::scenes, MapFilter::cubic)}) {
+        Scene scene = make_smooth_torus(DisplacementSpace::tangent);
+        scene.displacements[0].filter = filter;
+        const RenderSettings settings = make_session_settings();
+        Session session(scene, settings, use);
+        uint64_t fewest = UINT64_MAX, most = 0;
+        session.render();
+        for (const float distance : {4.0f, 40.0f, 1.6f, 400.0f, 4.0f}) {
+            scene.camera.from = scene.camera.to + Vec3f{0.6f, 0.7f, 0.4f} * distance;
+            session.change_view(scene.camera, settings.image);
+            const RenderResult shown = session.render(), fresh = render(scene, settings);
+            ASSERT_TRUE(shown.image.pixels == fresh.image.pixels) << distance;
+            EXPECT_EQ(shown.statistics.patches, fresh.statistics.patches) << distance;
+            fewest = std::min(fewest, fresh.statistics.patches),
+            most = std::max(most, fresh.statistics.patches);
+        }
+        EXPECT_GT(most, 2 * fewest) << "no view asked for another level";
+    }
+}
+
+TEST(SessionView, a_preview_may_have_the_geometry_of_the_picture_after_it) {
+    const Scene scene = make_smooth_torus(DisplacementSpace::tangent);
+    const RenderSettings settings = make_session_settings();
+    RenderSettings preview = settings;
+    preview.image.width /= 4, preview.image.height /= 4;
+    Session without(scene, preview, SessionUse::views);
+    without.change_view(scene.camera, settings.image);
+    EXPECT_EQ(without.made_surfaces(), 2u) << "another size asks for other patches";
+    preview.image.detail_height = settings.image.height;
+    Session session(scene, preview, SessionUse::views);
+    session.render();
+    session.change_view(scene.camera, settings.image);
+    EXPECT_EQ(session.made_surfaces(), 1u);
+    EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
+}
+
+TEST(SessionView, edits_of_a_map_outlive_another_subdivision) {
+    Scene scene = make_smooth_torus(DisplacementSpace::tangent);
+    const RenderSettings settings = make_session_settings();
+    Session session(scene, settings);
+    session.render();
+    MapEdit edit;
+    edit.displacement = scene.displacements[0].name;
+    edit.x = 2, edit.y = 3;
+    edit.texels = *scene.displacements[0].tiles[0].texture;
+    edit.texels.width = edit.texels.height = 1;
+    if (edit.texels.halves.empty())
+        edit.texels.floats.assign(edit.texels.stride, 0.125f);
+    else
+        edit.texels.halves.assign(edit.texels.stride, 0x3000);
+    session.edit(edit);
+    scene.camera.from = scene.camera.to + Vec3f{0.6f, 0.7f, 0.4f} * 1.6f;
+    session.change_view(scene.camera, settings.image);
+    auto edited = std::make_shared<Texture>(*scene.displacements[0].tiles[0].texture);
+    const size_t place = edited->find_texel(2, 3);
+    for (size_t c = 0; c < edited->stride; ++c) {
+        if (edited->halves.empty())
+            edited->floats[place + c] = 0.125f;
+        else
+            edited->halves[place + c] = 0x3000;
+    }
+    scene.displacements[0].tiles[0].texture = edited;
+    EXPECT_TRUE(session.render().image.pixels == render(scene, settings).image.pixels);
 }
 
 TEST(SessionView, chooses_other_copies_of_filtered_maps) {

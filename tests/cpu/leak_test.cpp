@@ -26,6 +26,7 @@ constexpr uint64_t kRaysABatch = 4096;
 enum class Body { sphere, torus, creased };
 enum class Uvs { everywhere, missing_on_some_faces, in_two_tiles };
 enum class Placement { single, instances };
+enum class BaseLevels { fixed, automatic };
 
 struct LeakCase {
     const char* name;
@@ -38,6 +39,7 @@ struct LeakCase {
     FrameLengths lengths = FrameLengths::absolute;
     MapFilter filter = MapFilter::none;
     Uvs uvs = Uvs::everywhere;
+    BaseLevels base = BaseLevels::fixed;
 };
 
 void PrintTo(const LeakCase& c, std::ostream* stream) { *stream << c.name; }
@@ -92,6 +94,21 @@ const LeakCase kLeakCases[] = {
     {"cubic_torus_with_faces_without_uvs_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel,
      Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic,
      Uvs::missing_on_some_faces},
+    {"automatic_sphere_tangent_auto", Body::sphere, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::none, Uvs::everywhere,
+     BaseLevels::automatic},
+    {"automatic_creased_cube_tangent_auto", Body::creased, DisplacementSpace::tangent, kAutoLevel,
+     Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::none,
+     Uvs::everywhere, BaseLevels::automatic},
+    {"automatic_torus_object_auto_instances", Body::torus, DisplacementSpace::object, kAutoLevel,
+     Placement::instances, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute,
+     MapFilter::none, Uvs::everywhere, BaseLevels::automatic},
+    {"automatic_torus_with_faces_without_uvs_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel,
+     Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::none,
+     Uvs::missing_on_some_faces, BaseLevels::automatic},
+    {"automatic_torus_in_two_tiles_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel,
+     Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic,
+     Uvs::in_two_tiles, BaseLevels::automatic},
 };
 
 /// Small, fast, seeded by the batch, so that a leak can be found again.
@@ -138,7 +155,10 @@ Scene make_scene(const LeakCase& c) {
     if (c.uvs == Uvs::in_two_tiles)
         for (Vec2f& uv : mesh.uvs) uv.x *= 2;
     mesh.subdivision.scheme = c.scheme;
-    mesh.subdivision.level = c.body == Body::sphere ? 1 : c.body == Body::creased ? 2 : 0;
+    mesh.subdivision.level = c.base == BaseLevels::automatic ? kAutoSubdivisionLevel
+                             : c.body == Body::sphere        ? 1
+                             : c.body == Body::creased       ? 2
+                                                             : 0;
     Scene scene = test::make_body_scene(
         std::move(mesh),
         test::make_displacement(test::make_random_map(256, 192, c.body == Body::torus ? 0.06f : 0.12f, 21),

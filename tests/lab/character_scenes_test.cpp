@@ -160,7 +160,7 @@ TEST(CharacterScenes, maps_displace_a_little_and_agree_where_islands_meet) {
         const Scene scene = make_character_scene(name, CharacterDetail::full);
         Mesh mesh = scene.meshes[0];
         mesh.subdivision = {}; // only its map is asked for
-        const Surface surface = make_surface(mesh, &scene.displacements[0], Affine{});
+        const Surface surface = make_surface(mesh, &scene.displacements[0], {});
         std::map<uint32_t, Vec3f> moved;
         float longest = 0, worst = 0;
         for (size_t corner = 0; corner < mesh.position_indices.size(); ++corner) {

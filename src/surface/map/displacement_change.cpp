@@ -105,6 +105,9 @@ double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Ve
                        rows = wrap_range(first(v0, error.y, texture.height),
                                          last(v1, error.y, texture.height), texture.height, map_.wrap);
     const double texels = error.x * texture.width + error.y * texture.height;
+    // Beyond a border the map goes on with other values.
+    if (columns.count != 1 || rows.count != 1 || columns.is_outside_read || rows.is_outside_read)
+        return 2 * longest_ * std::min(1.0, texels);
     return std::min(2 * longest_, double(find_largest_step(tile.index, columns, rows)) * texels);
 }
 

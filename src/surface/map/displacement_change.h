@@ -32,9 +32,13 @@ class DisplacementChange {
     /// (both coordinates not negative).
     double find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error) const;
 
-    /// A length that no texel of the map displaces by more than.
+    /// The largest length that a texel of the map may displace by.
     double longest() const { return longest_; }
     bool is_tangent() const { return map_.is_tangent; }
+    /// Whether it displaces along tangents, which heights do not.
+    bool uses_tangents() const {
+        return map_.is_tangent && !(map_.matrix[0] == Vec3f{} && map_.matrix[1] == Vec3f{});
+    }
 
   private:
     struct Blocks {

@@ -20,8 +20,9 @@ namespace {
 
 constexpr int kMostRounds = 8;
 /// From this share of the quads of a connected part of the mesh on, all are cut.
-constexpr double kManyQuads = 0.12;
+constexpr double kManyQuads = 0.3;
 constexpr double kMostSpare = 40;
+constexpr const char* kWhat = "its automatic subdivision";
 /// A cause of error is acted on from this part of the tolerance on.
 constexpr double kSmallestCause = 0.25;
 
@@ -73,7 +74,7 @@ class LimitUvs {
     }
 
   private:
-    /// Bilinear within the face, or within the part of a polygon.
+    /// Interpolates linearly within the face, or within the part of a polygon.
     Vec2f interpolate(uint32_t set, const QuadPlace& face, const Vec2<double>& at) const {
         const uint32_t start = cage_.starts[face.face], size = cage_.face_size(face.face);
         const auto corner = [&](uint32_t k) {
@@ -117,11 +118,11 @@ struct LimitSurfaces {
 };
 
 /// Why a quad is to be cut.
-struct Wishes {
+struct SplitReasons {
     bool splits_u = false, splits_v = false;       ///< its edges along that direction
     bool splits_fit = false;                       ///< the fitted patch is too far away
     std::unique_ptr<std::array<Vec3d, 12>> fitted; ///< null: no fit was needed
-    bool depends_on_tolerance = false; ///< another tolerance might choose another fit
+    bool depends_on_tolerance = false;             ///< another tolerance might choose another fit
     double part = 0; ///< of the tolerance that the errors come to, also where no smaller quads are allowed
 };
 
@@ -132,6 +133,7 @@ class AdaptiveCage {
         : mesh_(mesh), polygons_(polygons), needs_(needs), source_(mesh.make_cage()), cage_(source_) {}
 
     RefinedMesh run() {
+        check_patch_count(source_.face_count(), polygons_.where, kWhat);
         bool has_polygons = false;
         for (uint32_t face = 0; face < source_.face_count(); ++face)
             has_polygons = has_polygons || source_.face_size(face) != 4;
@@ -157,15 +159,15 @@ class AdaptiveCage {
   private:
     void split(std::vector<uint8_t> is_split) {
         make_splits_even(cage_, is_split);
+        check_patch_count(count_pieces(cage_, is_split), polygons_.where, kWhat);
         LimitUvs uvs(mesh_, source_);
         cage_ =
             split_faces(cage_, is_split, [&](uint32_t set, const QuadPlace& face, const Vec2<double>& at) {
                 return uvs.find(set, face, at);
             });
-        check_patch_count(cage_.face_count(), polygons_.where, "its automatic subdivision");
     }
 
-    /// Of each face, or of each part of a polygon.
+    /// Measures each face, and each part of a polygon.
     void measure_bends() {
         first_bends_.push_back(0);
         for (uint32_t face = 0; face < source_.face_count(); ++face)
@@ -194,18 +196,18 @@ class AdaptiveCage {
     std::vector<uint8_t> choose_splits() {
         const RefinedMesh refined = make_refined(cage_);
         const std::vector<uint32_t> runs = find_face_runs(refined);
-        std::vector<Wishes> wishes(cage_.face_count());
+        std::vector<SplitReasons> reasons(cage_.face_count());
         parallel_for("errors of patches", runs.size() - 1, 64, [&](size_t begin, size_t end) {
             for (size_t run = begin; run < end; ++run) {
                 LimitSurfaces limits{mesh_, refined.places[runs[run]].face, {}, {}};
                 for (uint32_t quad = runs[run]; quad < runs[run + 1]; ++quad)
-                    if (!cage_.is_accurate[quad]) wishes[quad] = judge(refined, quad, limits);
+                    if (!cage_.is_accurate[quad]) reasons[quad] = judge(refined, quad, limits);
             }
         });
         std::vector<uint8_t> is_split(cage_.is_sharp.size()), has_spokes(cage_.point_count);
-        widen_wishes(wishes);
+        widen_reasons(reasons);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad)
-            if (!cage_.is_accurate[quad]) mark_splits(quad, wishes[quad], is_split, has_spokes);
+            if (!cage_.is_accurate[quad]) mark_splits(quad, reasons[quad], is_split, has_spokes);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad)
             for (uint32_t k = 0; k < 4; ++k)
                 if (has_spokes[cage_.points[4 * quad + k]])
@@ -216,17 +218,20 @@ class AdaptiveCage {
 
     /// Where many quads of a connected part of the mesh are to be cut in both directions, all are: whole
     /// levels need fewer quads than the ways around many single ones, and are exact on bicubic faces.
-    void widen_wishes(std::vector<Wishes>& wishes) {
-        const auto is_both = [](const Wishes& wish) { return wish.splits_u && wish.splits_v; };
+    void widen_reasons(std::vector<SplitReasons>& reasons) {
+        const auto is_both = [](const SplitReasons& reason) { return reason.splits_u && reason.splits_v; };
         std::vector<uint32_t> quads(part_count_), wanted(part_count_);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad) {
             const uint32_t part = part_of_face_[cage_.places[quad].face];
-            ++quads[part], wanted[part] += is_both(wishes[quad]) && !cage_.is_accurate[quad];
+            ++quads[part], wanted[part] += is_both(reasons[quad]) && !cage_.is_accurate[quad];
         }
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad) {
             const uint32_t part = part_of_face_[cage_.places[quad].face];
-            if (double(wanted[part]) < kManyQuads * double(quads[part])) continue;
-            wishes[quad].splits_u = wishes[quad].splits_v = true, wishes[quad].splits_fit = false;
+            const std::array<Vec2<double>, 4>& c = cage_.places[quad].corners;
+            const bool is_finest =
+                std::min(measure(c[1] - c[0]), measure(c[3] - c[0])) < std::ldexp(1.5, -kFinestPatchLevel);
+            if (is_finest || double(wanted[part]) < kManyQuads * double(quads[part])) continue;
+            reasons[quad].splits_u = reasons[quad].splits_v = true, reasons[quad].splits_fit = false;
             cage_.is_accurate[quad] = 0;
         }
     }
@@ -250,19 +255,20 @@ class AdaptiveCage {
         }
     }
 
-    void mark_splits(uint32_t quad, const Wishes& wishes, std::vector<uint8_t>& is_split,
+    void mark_splits(uint32_t quad, const SplitReasons& reasons, std::vector<uint8_t>& is_split,
                      std::vector<uint8_t>& has_spokes) {
         const uint32_t* edges = &cage_.edges[4 * quad];
         const uint32_t* points = &cage_.points[4 * quad];
         const auto mark = [&](size_t k) { is_split[edges[k & 3]] = 1; };
-        if (wishes.splits_u) mark(0), mark(2);
-        if (wishes.splits_v) mark(1), mark(3);
-        if (!wishes.splits_fit) {
-            if (wishes.splits_u || wishes.splits_v) return;
+        if (reasons.splits_u) mark(0), mark(2);
+        if (reasons.splits_v) mark(1), mark(3);
+        if (!reasons.splits_fit) {
+            if (reasons.splits_u || reasons.splits_v) return;
             cage_.is_accurate[quad] = 1;
-            if (wishes.fitted) cage_.fits[quad] = uint32_t(fitted_.size()), fitted_.push_back(*wishes.fitted);
-            largest_part_ = std::max(largest_part_, wishes.part);
-            is_cut_ = is_cut_ || wishes.depends_on_tolerance;
+            if (reasons.fitted)
+                cage_.fits[quad] = uint32_t(fitted_.size()), fitted_.push_back(*reasons.fitted);
+            largest_part_ = std::max(largest_part_, reasons.part);
+            is_cut_ = is_cut_ || reasons.depends_on_tolerance;
             return;
         }
         // Towards creases that wear off, else towards irregular points, else in both directions.
@@ -276,7 +282,7 @@ class AdaptiveCage {
     }
 
     /// Finds what is too far away at a quad; the quads of the cage are those of `refined`.
-    Wishes judge(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits) const {
+    SplitReasons judge(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits) const {
         const QuadPlace& place = refined.places[quad];
         const std::array<Vec2<double>, 4>& c = place.corners;
         const Vec2<double> u = (c[1] - c[0] + c[2] - c[3]) * 0.5, v = (c[3] - c[0] + c[2] - c[1]) * 0.5;
@@ -286,16 +292,16 @@ class AdaptiveCage {
                    (first_bends_[place.face + 1] - first_bends_[place.face] > 1 ? place.part : 0)];
         const BendAlong along_u = find_bend_along(bend, u), along_v = find_bend_along(bend, v);
         const double smallest = std::min(measure(u), measure(v));
-        Wishes wishes;
+        SplitReasons reasons;
         if (needs_.patches == BasePatches::bilinear) {
             const double twist = bend.position_twist * std::fabs(u.x * v.y - u.y * v.x) / 4;
-            wishes.part = (along_u.position + along_v.position + twist) / tolerance;
-            if (wishes.part <= 1) return wishes;
+            reasons.part = (along_u.position + along_v.position + twist) / tolerance;
+            if (reasons.part <= 1) return reasons;
             const auto choose = [&](double off, const Vec2<double>& way) {
                 return off + twist / 2 > tolerance / 2 && measure(way) > std::ldexp(1.5, -kFinestPatchLevel);
             };
-            wishes.splits_u = choose(along_u.position, u), wishes.splits_v = choose(along_v.position, v);
-            return wishes;
+            reasons.splits_u = choose(along_u.position, u), reasons.splits_v = choose(along_v.position, v);
+            return reasons;
         }
         const LimitFace& limit = limits.positions();
         const bool is_aligned = (c[1] - c[0]).y * (c[1] - c[0]).x == 0 &&
@@ -303,19 +309,26 @@ class AdaptiveCage {
         const bool is_exact = is_aligned && limit.is_bicubic_within(place);
         PatchError error;
         if (needs_.change && !refined.uvs.empty() && has_curved_uvs(bend))
-            error = fit_to_uvs(refined, quad, limits, bend, is_exact ? nullptr : &tolerance, wishes);
-        else if (!is_exact)
-            error = fit_nearest(refined, quad, limits, bend, wishes);
+            error = fit_to_uvs(refined, quad, limits, bend, reasons);
+        if (is_exact && reasons.fitted && error.off + error.change > tolerance) {
+            // As it is, the patch has no error but that of its uvs.
+            const PatchError plain{0, find_change(refined.uvs[quad], along_u.uv + along_v.uv, bend)};
+            if (plain.change < error.off + error.change)
+                error = plain, reasons.fitted = nullptr, reasons.depends_on_tolerance = true;
+        } else if (!is_exact && reasons.fitted && error.off + error.change > tolerance) {
+            error = choose_nearest(refined, quad, limits, bend, error, reasons);
+        }
+        if (!is_exact && !reasons.fitted) error = fit_nearest(refined, quad, limits, bend, reasons);
         const double frame_u = find_frame_error(along_u, bend), frame_v = find_frame_error(along_v, bend);
-        wishes.part = (error.off + error.change + frame_u + frame_v) / tolerance;
-        if (wishes.part <= 1) return wishes;
+        reasons.part = (error.off + error.change + frame_u + frame_v) / tolerance;
+        if (reasons.part <= 1) return reasons;
         const double cause = kSmallestCause * tolerance, finest = std::ldexp(1.5, -kFinestUvLevel);
-        const bool has_bad_uvs = error.change > cause;
-        wishes.splits_u = (has_bad_uvs || frame_u > cause) && measure(u) > finest;
-        wishes.splits_v = (has_bad_uvs || frame_v > cause) && measure(v) > finest;
-        wishes.splits_fit = !is_exact && error.off > cause && smallest > std::ldexp(1.5, -kFinestPatchLevel);
-        if (wishes.splits_fit) wishes.splits_u = wishes.splits_v = false;
-        return wishes;
+        const bool has_bad_uvs = error.change > cause || (is_exact && error.off > cause);
+        reasons.splits_u = (has_bad_uvs || frame_u > cause) && measure(u) > finest;
+        reasons.splits_v = (has_bad_uvs || frame_v > cause) && measure(v) > finest;
+        reasons.splits_fit = !is_exact && error.off > cause && smallest > std::ldexp(1.5, -kFinestPatchLevel);
+        if (reasons.splits_fit) reasons.splits_u = reasons.splits_v = false;
+        return reasons;
     }
 
     struct PatchError {
@@ -329,27 +342,31 @@ class AdaptiveCage {
                          bend.uv_twist.y}) > kStraight;
     }
 
-    /// With parameters that follow uvs; where that leaves the tolerance (null: it must) and the nearest patch
-    /// is better, that one.
+    /// Fits a patch whose parameters follow uvs.
     PatchError fit_to_uvs(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits,
-                          const FaceBend& bend, const double* tolerance, Wishes& wishes) const {
+                          const FaceBend& bend, SplitReasons& reasons) const {
         PatchFit fit(limits.positions(), refined, quad);
         fit.fit_to_uvs(limits.uvs(), refined.uvs[quad]);
-        PatchError error{fit.distance(), find_change(refined.uvs[quad], fit.uv_error(), bend)};
-        wishes.fitted = std::make_unique<std::array<Vec3d, 12>>(fit.controls());
-        if (!tolerance || error.off + error.change <= *tolerance) return error;
-        Wishes others;
+        reasons.fitted = std::make_unique<std::array<Vec3d, 12>>(fit.controls());
+        return {fit.distance(), find_change(refined.uvs[quad], fit.uv_error(), bend)};
+    }
+
+    /// Takes the patch that is nearest to the surface in place of one with the error `before`, if it is
+    /// better.
+    PatchError choose_nearest(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits,
+                              const FaceBend& bend, const PatchError& before, SplitReasons& reasons) const {
+        SplitReasons others;
         const PatchError nearest = fit_nearest(refined, quad, limits, bend, others);
-        if (nearest.off + nearest.change >= error.off + error.change) return error;
-        wishes.fitted = std::move(others.fitted), wishes.depends_on_tolerance = true;
+        if (nearest.off + nearest.change >= before.off + before.change) return before;
+        reasons.fitted = std::move(others.fitted), reasons.depends_on_tolerance = true;
         return nearest;
     }
 
     PatchError fit_nearest(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits,
-                           const FaceBend& bend, Wishes& wishes) const {
+                           const FaceBend& bend, SplitReasons& reasons) const {
         PatchFit fit(limits.positions(), refined, quad);
         fit.fit();
-        wishes.fitted = std::make_unique<std::array<Vec3d, 12>>(fit.controls());
+        reasons.fitted = std::make_unique<std::array<Vec3d, 12>>(fit.controls());
         if (!needs_.change || refined.uvs.empty()) return {fit.distance(), 0};
         const std::array<Vec2f, 4>& uvs = refined.uvs[quad];
         Vec2<double> size{};
@@ -370,7 +387,9 @@ class AdaptiveCage {
     /// Error of the displacement by frames that are interpolated across a quad.
     double find_frame_error(const BendAlong& along, const FaceBend& bend) const {
         if (!needs_.change || !needs_.change->is_tangent()) return 0;
-        const double error = along.frame * needs_.change->longest();
+        const double bent =
+            needs_.change->uses_tangents() ? std::max(along.normal, along.tangent) : along.normal;
+        const double error = bent * needs_.change->longest();
         return needs_.has_relative_lengths ? error * bend.stretch : error;
     }
 

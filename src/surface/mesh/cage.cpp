@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel.h"
 #include "relief/error.h"
 #include "surface/mesh/subdivision_topology.h"
 
@@ -166,7 +167,10 @@ LimitFace SubdivisionMesh::Implementation::make_uv_face(uint32_t face, int chann
             return read(&points[3 * size_t(base.GetFaceFVarValues(other, channel)[k])]);
         }));
     }
-    auto limit = std::make_unique<LimitFace::Surface>();
+    std::shared_ptr<const LimitFace::Surface>* kept =
+        kept_uv_faces.empty() ? nullptr : &kept_uv_faces[size_t(channel)][face];
+    if (kept && *kept) return LimitFace(*kept, 0, false);
+    auto limit = std::make_shared<LimitFace::Surface>();
     if (!factory->InitFaceVaryingSurface(int(face), &limit->surface,
                                          osd::Bfr::SurfaceFactory::Index(channel)))
         throw Error(ErrorKind::bad_input,
@@ -175,6 +179,7 @@ LimitFace SubdivisionMesh::Implementation::make_uv_face(uint32_t face, int chann
     limit->points.resize(3 * size_t(limit->surface.GetNumPatchPoints()));
     limit->surface.PreparePatchPoints(points.data(), 3, limit->points.data(), 3);
     limit->parameters = limit->surface.GetParameterization();
+    if (kept) *kept = limit;
     return LimitFace(std::move(limit), 0, false);
 }
 
@@ -184,22 +189,39 @@ std::vector<Vec2f> SubdivisionMesh::Implementation::find_base_uv_values(int chan
     const osd::Far::TopologyLevel base = refiner->GetLevel(0);
     const size_t count = uv_sets[size_t(channel)].values.size();
     if (!has_smooth_uvs) return uv_sets[size_t(channel)].values;
-    std::vector<Vec2f> values(count);
-    std::vector<bool> is_known(count);
+    // The face and corner that each value is evaluated at: of a bicubic face if there is one.
+    struct Place {
+        uint32_t face = kNoIndex, corner = 0;
+    };
+    std::vector<Place> places(count);
+    std::vector<std::vector<uint32_t>> values_of_face(size_t(base.GetNumFaces()));
     for (const bool is_bicubic_turn : {true, false})
         for (int face = 0; face < base.GetNumFaces(); ++face) {
-            if (is_bicubic_in_set(uint32_t(face), channel) != is_bicubic_turn) continue;
             const osd::Far::ConstIndexArray own = base.GetFaceFVarValues(face, channel);
-            std::optional<LimitFace> limit;
+            bool is_wanted = false;
+            for (const int value : own) is_wanted = is_wanted || places[size_t(value)].face == kNoIndex;
+            if (!is_wanted || is_bicubic_in_set(uint32_t(face), channel) != is_bicubic_turn) continue;
             for (int k = 0; k < own.size(); ++k) {
-                if (is_known[size_t(own[k])]) continue;
-                if (!limit) limit.emplace(make_uv_face(uint32_t(face), channel));
-                const bool is_quad = own.size() == 4;
-                const auto [u, v] = is_quad ? kCorner[size_t(k)] : std::array<uint32_t, 2>{0, 0};
-                const Vec3d uv = limit->evaluate_position(is_quad ? 0 : uint32_t(k), u, v);
-                values[size_t(own[k])] = {float(uv.x), float(uv.y)}, is_known[size_t(own[k])] = true;
+                Place& place = places[size_t(own[k])];
+                if (place.face != kNoIndex) continue;
+                place = {uint32_t(face), uint32_t(k)};
+                values_of_face[size_t(face)].push_back(uint32_t(own[k]));
             }
         }
+    std::vector<Vec2f> values(count);
+    parallel_for("limit uvs", values_of_face.size(), 64, [&](size_t begin, size_t end) {
+        for (uint32_t face = uint32_t(begin); face < end; ++face) {
+            if (values_of_face[face].empty()) continue;
+            const LimitFace limit = make_uv_face(face, channel);
+            const bool is_quad = base.GetFaceVertices(int(face)).size() == 4;
+            for (const uint32_t value : values_of_face[face]) {
+                const uint32_t k = places[value].corner;
+                const auto [u, v] = is_quad ? kCorner[k] : std::array<uint32_t, 2>{0, 0};
+                const Vec3d uv = limit.evaluate_position(is_quad ? 0 : k, u, v);
+                values[value] = {float(uv.x), float(uv.y)};
+            }
+        }
+    });
     return values;
 }
 
@@ -241,7 +263,10 @@ LimitFace SubdivisionMesh::make_face(uint32_t face) const {
             return read(&self.positions[3 * size_t(base.GetFaceVertices(other)[k])]);
         }));
     }
-    auto limit = std::make_unique<LimitFace::Surface>();
+    const auto [irregular, is_bicubic_apart] = self.find_irregular_corners(face);
+    if (!self.kept_faces.empty() && self.kept_faces[face])
+        return LimitFace(self.kept_faces[face], irregular, is_bicubic_apart);
+    auto limit = std::make_shared<LimitFace::Surface>();
     if (!self.factory->InitVertexSurface(int(face), &limit->surface))
         throw Error(ErrorKind::bad_input,
                     {"a face has no limit surface", fmt::format("{}, face {}", self.where, face),
@@ -249,7 +274,7 @@ LimitFace SubdivisionMesh::make_face(uint32_t face) const {
     limit->points.resize(3 * size_t(limit->surface.GetNumPatchPoints()));
     limit->surface.PreparePatchPoints(self.positions.data(), 3, limit->points.data(), 3);
     limit->parameters = limit->surface.GetParameterization();
-    const auto [irregular, is_bicubic_apart] = self.find_irregular_corners(face);
+    if (!self.kept_faces.empty()) self.kept_faces[face] = limit;
     return LimitFace(std::move(limit), irregular, is_bicubic_apart);
 }
 

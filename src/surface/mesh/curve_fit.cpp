@@ -92,6 +92,10 @@ double fit_curve(Curve& curve, const std::array<Vec3d, kFitCount>& targets, bool
         const double distance = project(curve, targets, place).distance;
         if (distance <= tolerance) return distance;
     }
+    if (curve[0] == curve[3] && std::ranges::all_of(targets, [&](const Vec3d& p) { return p == curve[0]; })) {
+        curve[1] = curve[2] = curve[0];
+        return 0;
+    }
     Places place = measure_way(curve, targets);
     Projection projection;
     for (int pass = 0; pass < kFitPasses; ++pass) {

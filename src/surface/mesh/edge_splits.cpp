@@ -1,7 +1,7 @@
 #include "surface/mesh/edge_splits.h"
 
 #include <array>
-#include <queue>
+#include <vector>
 
 #include "base/check.h"
 #include "relief/scene.h"
@@ -35,14 +35,12 @@ class OddQuads {
     }
 
   private:
-    /// Breadth first from face to face.
+    /// Searches from face to face, breadth first.
     void join_to_nearest(uint32_t start) {
-        std::queue<uint32_t> pending;
-        pending.push(start);
+        pending_.assign(1, start);
         seen_by_[start] = start, came_by_[start] = kNoIndex;
-        while (!pending.empty()) {
-            const uint32_t face = pending.front();
-            pending.pop();
+        for (size_t next = 0; next < pending_.size(); ++next) {
+            const uint32_t face = pending_[next];
             for (uint32_t corner = cage_.starts[face]; corner < cage_.starts[face + 1]; ++corner) {
                 const uint32_t edge = cage_.edges[corner];
                 if (is_split_[edge]) continue;
@@ -57,7 +55,7 @@ class OddQuads {
                     is_odd_[other] = 0;
                     return split_way(start, other);
                 }
-                pending.push(other);
+                pending_.push_back(other);
             }
         }
         DCHECK(false);
@@ -82,6 +80,7 @@ class OddQuads {
     std::vector<uint8_t>& is_split_;
     std::vector<std::array<uint32_t, 2>> faces_of_edge_;
     std::vector<uint8_t> is_odd_;
+    std::vector<uint32_t> pending_; ///< faces of the search, in order
     std::vector<uint32_t> seen_by_,
         came_by_; ///< the last search that saw a face, and the edge it came across
 };

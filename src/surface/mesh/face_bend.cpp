@@ -81,18 +81,21 @@ FaceBend measure_bend(const LimitFace& face, const LimitFace* uvs, uint32_t part
             if (!uvs) continue;
             const LimitSample uv = uvs->evaluate(part, u, v);
             uv_points[i][j] = uv.position;
-            const double area = std::fabs(uv.du.x * uv.dv.y - uv.du.y * uv.dv.x);
+            const double turned = uv.du.x * uv.dv.y - uv.du.y * uv.dv.x, area = std::fabs(turned);
+            const Vec3d along_u = (sample.du * uv.dv.y - sample.dv * uv.du.y) * (turned < 0 ? -1.0 : 1.0);
+            if (area > 0) tangents[i][j] = normalize_double(along_u);
             const double size = compute_length(cross(sample.du, sample.dv));
             if (area > 0) bend.stretch = std::max(bend.stretch, std::sqrt(size / area));
         }
     for (size_t direction = 0; direction < 2; ++direction) {
         bend.position[direction] = measure_positions(points, normals, direction, is_sharp);
-        bend.frame[direction] =
-            std::max(measure_directions(normals, direction), measure_directions(tangents, direction));
+        bend.normal[direction] = measure_directions(normals, direction);
+        bend.tangent[direction] = measure_directions(tangents, direction);
         bend.uv[direction] = measure_uvs(uv_points, direction);
     }
     bend.position_twist = std::fabs(dot(find_twist(points), normals[1][1]));
-    bend.frame_twist = std::max(compute_length(find_twist(normals)), compute_length(find_twist(tangents)));
+    bend.normal_twist = compute_length(find_twist(normals));
+    bend.tangent_twist = compute_length(find_twist(tangents));
     const Vec3d twist = find_twist(uv_points);
     bend.uv_twist = {std::fabs(twist.x), std::fabs(twist.y)};
     return bend;
@@ -101,7 +104,8 @@ FaceBend measure_bend(const LimitFace& face, const LimitFace* uvs, uint32_t part
 BendAlong find_bend_along(const FaceBend& bend, const Vec2<double>& step) {
     const double u = step.x * step.x, v = step.y * step.y, both = std::fabs(step.x * step.y) / 4;
     return {bend.position[0] * u + bend.position[1] * v + bend.position_twist * both,
-            bend.frame[0] * u + bend.frame[1] * v + bend.frame_twist * both,
+            bend.normal[0] * u + bend.normal[1] * v + bend.normal_twist * both,
+            bend.tangent[0] * u + bend.tangent[1] * v + bend.tangent_twist * both,
             bend.uv[0] * u + bend.uv[1] * v + bend.uv_twist * both};
 }
 

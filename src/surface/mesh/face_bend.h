@@ -10,12 +10,14 @@
 namespace relief {
 
 /// Largest distances from the values interpolated between the ends of lines across a whole face, or part of a
-/// polygon. A line that crosses a fraction s of it is s^2 as far away.
+/// polygon. Where the face is smooth, a line that crosses a fraction s of it
+/// is s^2 as far away.
 struct FaceBend {
     std::array<double, 2> position{}; ///< off the surface, or off sharp edges, along u and along v
-    std::array<double, 2> frame{};    ///< of the unit normal and of the direction of u
+    std::array<double, 2> normal{},
+        tangent{};                    ///< of the unit normal, and of the direction of growing u of uvs
     std::array<Vec2<double>, 2> uv{}; ///< per coordinate
-    double position_twist = 0, frame_twist = 0;
+    double position_twist = 0, normal_twist = 0, tangent_twist = 0;
     Vec2<double> uv_twist{};
     double stretch = 0; ///< largest length per uv
 };
@@ -27,7 +29,7 @@ FaceBend measure_bend(const LimitFace& face, const LimitFace* uvs, uint32_t part
 
 /// Distances along the way `step` across the face.
 struct BendAlong {
-    double position, frame;
+    double position, normal, tangent;
     Vec2<double> uv;
 };
 BendAlong find_bend_along(const FaceBend& bend, const Vec2<double>& step);

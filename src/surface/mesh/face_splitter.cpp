@@ -100,6 +100,7 @@ class FaceSplitter {
     void split_polygon(uint32_t face) {
         const uint32_t size = cage_.face_size(face);
         const Node inside = make_node({cage_.places[face].face, 0, {}}, {1, 1});
+        result_.is_regular[inside.point] = false;
         std::vector<Node> side(size);
         for (uint32_t k = 0; k < size; ++k)
             side[k] = take_middle(face, k, {cage_.places[face].face, k, {}}, {1, 0});
@@ -215,6 +216,19 @@ class FaceSplitter {
 };
 
 } // namespace
+
+uint64_t count_pieces(const Cage& cage, const std::vector<uint8_t>& is_split) {
+    uint64_t sum = 0;
+    for (uint32_t face = 0; face < cage.face_count(); ++face) {
+        const uint32_t size = cage.face_size(face), start = cage.starts[face];
+        int count = 0;
+        for (uint32_t k = 0; k < size; ++k) count += is_split[cage.edges[start + k]] != 0;
+        const bool is_opposite =
+            count == 2 && (is_split[cage.edges[start]] == is_split[cage.edges[start + 2]]);
+        sum += size != 4 ? size : count == 4 ? 4 : count == 0 ? 1 : is_opposite ? 2 : 3;
+    }
+    return sum;
+}
 
 Cage split_faces(const Cage& cage, const std::vector<uint8_t>& is_split, const FindUv& find_uv) {
     return FaceSplitter(cage, is_split, find_uv).run();

@@ -24,7 +24,7 @@ Vec3d blend(const std::array<Vec3d, 4>& c, const std::array<double, 4>& w) {
     return c[0] * w[0] + c[1] * w[1] + c[2] * w[2] + c[3] * w[3];
 }
 
-LimitSample evaluate_spline(const SplineControls& controls, double u, double v) {
+LimitSample evaluate_spline(const SplineControls& controls, double u, double v, bool has_twist) {
     const SplineWeights along(u), across(v);
     std::array<Vec3d, 4> value, slope; // of the columns at v
     for (size_t column = 0; column < 4; ++column) {
@@ -32,12 +32,13 @@ LimitSample evaluate_spline(const SplineControls& controls, double u, double v) 
         slope[column] = blend(controls[column], across.slope);
     }
     return {blend(value, along.value), blend(value, along.slope), blend(slope, along.value),
-            blend(slope, along.slope)};
+            has_twist ? blend(slope, along.slope) : Vec3d{}};
 }
 
 } // namespace
 
-LimitFace::LimitFace(std::unique_ptr<Surface> surface, uint32_t irregular_corners, bool is_bicubic_apart)
+LimitFace::LimitFace(std::shared_ptr<const Surface> surface, uint32_t irregular_corners,
+                     bool is_bicubic_apart)
     : surface_(std::move(surface)),
       irregular_corners_(irregular_corners),
       is_bicubic_apart_(is_bicubic_apart) {}
@@ -45,7 +46,7 @@ LimitFace::LimitFace(const SplineControls& controls) : controls_(controls) {}
 LimitFace::~LimitFace() = default;
 LimitFace::LimitFace(LimitFace&&) noexcept = default;
 
-/// After one step of subdivision all cells of a face are regular but for those at its irregular corners,
+/// After one step of subdivision all cells of a face are regular except those at its irregular corners,
 /// after d steps with cells of 2^-d: the rectangle must lie in such a cell, and not at an irregular corner.
 bool LimitFace::is_bicubic_within(const QuadPlace& quad) const {
     if (is_bicubic()) return true;
@@ -96,10 +97,17 @@ Vec3d LimitFace::evaluate_position(uint32_t part, double u, double v) const {
 }
 
 LimitSample LimitFace::evaluate(uint32_t part, double u, double v) const {
-    if (!surface_) return evaluate_spline(controls_, u, v);
-    double place[2];
+    if (!surface_) return evaluate_spline(controls_, u, v, false);
+    double place[2], p[3], du[3], dv[3];
     const double scale = find_place(part, u, v, place);
-    double p[3], du[3], dv[3], duu[3], duv[3], dvv[3];
+    surface_->surface.Evaluate(place, surface_->points.data(), 3, p, du, dv);
+    return {read(p), read(du) * scale, read(dv) * scale};
+}
+
+LimitSample LimitFace::evaluate_with_twist(uint32_t part, double u, double v) const {
+    if (!surface_) return evaluate_spline(controls_, u, v, true);
+    double place[2], p[3], du[3], dv[3], duu[3], duv[3], dvv[3];
+    const double scale = find_place(part, u, v, place);
     surface_->surface.Evaluate(place, surface_->points.data(), 3, p, du, dv, duu, duv, dvv);
     return {read(p), read(du) * scale, read(dv) * scale, read(duv) * (scale * scale)};
 }

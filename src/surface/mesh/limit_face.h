@@ -12,7 +12,8 @@ namespace relief {
 
 /// Limit value and derivatives in the parameters of a face or part.
 struct LimitSample {
-    Vec3d position, du, dv, duv;
+    Vec3d position, du, dv;
+    Vec3d duv{}; ///< only of evaluate_with_twist()
 };
 
 /// Control points [column along u][row along v] of a uniform bicubic B-spline patch; the corners of the face
@@ -24,7 +25,7 @@ class LimitFace {
   public:
     struct Surface; ///< as OpenSubdiv evaluates it
     /// `is_bicubic_apart`: except where it is nearest to its irregular corners, as is_bicubic_within() finds.
-    LimitFace(std::unique_ptr<Surface> surface, uint32_t irregular_corners, bool is_bicubic_apart);
+    LimitFace(std::shared_ptr<const Surface> surface, uint32_t irregular_corners, bool is_bicubic_apart);
     explicit LimitFace(const SplineControls& controls);
     ~LimitFace();
     LimitFace(LimitFace&&) noexcept;
@@ -32,6 +33,9 @@ class LimitFace {
     /// Evaluates the limit at (u, v) in [0, 1]^2 of the face, or of the part of a polygon beside corner
     /// `part`. For uvs z is 0.
     LimitSample evaluate(uint32_t part, double u, double v) const;
+
+    /// The same with the mixed second derivative.
+    LimitSample evaluate_with_twist(uint32_t part, double u, double v) const;
 
     /// The position of evaluate(), in less time.
     Vec3d evaluate_position(uint32_t part, double u, double v) const;
@@ -44,7 +48,7 @@ class LimitFace {
   private:
     double find_place(uint32_t part, double u, double v, double (&place)[2]) const;
 
-    std::unique_ptr<Surface> surface_; ///< null: the face is the spline of `controls_`
+    std::shared_ptr<const Surface> surface_; ///< null: the face is the spline of `controls_`
     SplineControls controls_;
     uint32_t irregular_corners_ = 0; ///< bit k: corner k of the quad, or of every part of a polygon
     bool is_bicubic_apart_ = true;

@@ -20,7 +20,7 @@ constexpr uint64_t kBytesPerPatch = 900;
 void check_patch_count(uint64_t count, const std::string& where, const std::string& what) {
     const auto refuse = [&](std::string message) {
         throw Error(ErrorKind::out_of_memory,
-                    {std::move(message), where, "lower the level of its subdivision"});
+                    {std::move(message), where, "set a lower level of its subdivision"});
     };
     if (count > kMostPatches)
         refuse(fmt::format("{} makes {} patches, at most {} are possible", what, count, kMostPatches));

@@ -24,7 +24,8 @@ PatchFit::PatchFit(const LimitFace& face, const RefinedMesh& refined, uint32_t q
     for (size_t k = 0; k < 4; ++k) {
         is_regular_[k] = refined.is_regular[refined.points[quad][k]];
         const Vec2<double> to_next = side(k), to_previous = side((k + 3) % 4) * -1.0;
-        const LimitSample sample = face_.evaluate(place_.part, place_.corners[k].x, place_.corners[k].y);
+        const LimitSample sample =
+            face_.evaluate_with_twist(place_.part, place_.corners[k].x, place_.corners[k].y);
         corner_[k] = sample.position;
         normal_[k] = find_normal(k, sample);
         to_next_[k] = sample.du * to_next.x + sample.dv * to_next.y;

@@ -1,4 +1,4 @@
-// Where a quad of a subdivided mesh lies on the mesh.
+// The place of a quad of a subdivided mesh on that mesh.
 #pragma once
 
 #include <array>

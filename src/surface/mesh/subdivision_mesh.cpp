@@ -22,7 +22,9 @@ namespace {
 constexpr int kStepsBeyond = 7;
 constexpr int kMostSteps = 10;
 /// The same where faces are cut no finer than a tolerance asks for.
-constexpr int kStepsOfAutomatic = 5;
+constexpr int kStepsOfAutomatic = 4;
+/// Limit surfaces that are kept, with a few thousand bytes each.
+constexpr std::ptrdiff_t kMostKept = 1 << 15;
 
 /// What OpenSubdiv complained of last, which it would print otherwise.
 thread_local std::string complaint;
@@ -219,6 +221,11 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
         for (const Vec2f& uv : set.values) points.insert(points.end(), {uv.x, uv.y, 0});
     }
     if (subdivision.scheme == SubdivisionScheme::catmark) self.find_bicubic_faces();
+    const auto irregular = std::count(self.is_bicubic.begin(), self.is_bicubic.end(), false);
+    if (is_automatic && irregular <= kMostKept) {
+        self.kept_faces.resize(polygons.face_count());
+        self.kept_uv_faces.assign(self.uv_sets.size(), self.kept_faces);
+    }
 }
 
 SubdivisionMesh::~SubdivisionMesh() = default;

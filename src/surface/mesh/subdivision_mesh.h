@@ -42,7 +42,7 @@ struct RefinedMesh {
     uint32_t quad_count() const { return uint32_t(points.size()); }
 };
 
-/// Immutable; its faces may be made by any thread.
+/// Immutable; its faces may be made by any thread, but each by one at a time.
 class SubdivisionMesh {
   public:
     /// The scheme must not be `none`. Throws bad_input with mesh and points for non-manifold or
@@ -59,7 +59,8 @@ class SubdivisionMesh {
     std::vector<Vec3f> compute_points() const;
     /// The faces with limit uvs and what is known about their points. For a mesh that is not refined.
     Cage make_cage() const;
-    /// Limit positions of a face. Throws bad_input for a face without a limit surface.
+    /// Limit positions of a face. With automatic levels the mesh keeps what takes long to make. Throws
+    /// bad_input for a face without a limit surface.
     LimitFace make_face(uint32_t face) const;
     /// Limit uvs of a face in set `set` of Cage::uvs.
     LimitFace make_uv_face(uint32_t face, uint32_t set) const;

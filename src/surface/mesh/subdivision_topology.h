@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
@@ -48,7 +49,7 @@ struct LimitFace::Surface {
 };
 
 /// Whether the quads around a point are bicubic on each side of what stays sharp, as far as the point's own
-/// sharpness and edges tell.
+/// sharpness and edges decide that.
 bool is_regular_point(const osd::Far::TopologyLevel& level, int point);
 
 /// Whether one semi-sharp crease, which does not change, is all that keeps a point from being regular.
@@ -66,6 +67,10 @@ struct SubdivisionMesh::Implementation {
     std::vector<double> positions;
     std::vector<std::vector<double>> uv_points; ///< per set: its values as (u, v, 0)
     std::vector<bool> is_bicubic;               ///< per face: its limit is one polynomial
+    /// Per face: its limit surface as OpenSubdiv made it, and per set that of its uvs, for the next time;
+    /// empty: nothing is kept.
+    mutable std::vector<std::shared_ptr<const LimitFace::Surface>> kept_faces;
+    mutable std::vector<std::vector<std::shared_ptr<const LimitFace::Surface>>> kept_uv_faces;
     RefinerPointer refiner;
     std::optional<Factory> factory;
 

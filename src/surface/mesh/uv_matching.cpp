@@ -8,7 +8,7 @@ namespace relief {
 namespace {
 
 constexpr int kSteps = 3; // of Newton's method
-/// A place is looked for no further outside of the quad, in parts of it.
+/// Places are at most this far outside of the quad, in parts of it.
 constexpr double kFurthest = 0.25;
 
 template <class Value> Value blend(const std::array<Value, 4>& c, double x, double y) {

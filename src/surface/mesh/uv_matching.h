@@ -1,6 +1,6 @@
 // Places of a face whose limit uvs are those that a patch interpolates between its corners.
 //
-// Uvs of a patch are bilinear, those of the limit surface are not. So that the map lies where it belongs, the
+// Uvs of a patch are bilinear, those of the limit surface are not. So that the map is where it belongs, the
 // patch does not follow the parameters of the face: its point (x, y) is fitted to the point of the limit
 // surface which has the uv of (x, y).
 #pragma once
@@ -14,7 +14,7 @@ namespace relief {
 
 class UvMatching {
   public:
-    /// Of a quad with `uvs` at its corners. Refers to its arguments.
+    /// Matches a quad with `uvs` at its corners. Refers to its arguments.
     UvMatching(const LimitFace& uv_face, const QuadPlace& place, const std::array<Vec2f, 4>& uvs);
 
     /// The uv that the patch has at (x, y).
@@ -22,7 +22,7 @@ class UvMatching {
 
     struct Match {
         Vec2<double> place;  ///< in the parameters of the quad
-        Vec2<double> error;  ///< how far its uv is from the one looked for, absolute
+        Vec2<double> error;  ///< how far its uv is from the wanted one, absolute
         Vec2<double> du, dv; ///< derivatives of the uv by the parameters of the quad
     };
     /// Finds the place whose uv is that of (x, y). May be outside of the face where that is bicubic.
