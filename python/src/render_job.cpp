@@ -149,10 +149,12 @@ class Waiter {
 
     /// What was told last is told again, so that a callback that wants an end need not wait long.
     void follow_progress(const Mailbox::News& news) {
-        if (news.prepared && !has_begun_) latest_.prepared = *news.prepared;
+        if (news.prepared && !has_begun_) latest_.prepared = *news.prepared, is_untold_ = true;
         if (news.progress || news.picture) has_begun_ = true, latest_.prepared = 1;
         if (news.progress) static_cast<Progress&>(latest_) = *news.progress;
-        if (news.is_done ? !news.progress : !news.progress && ++looks_ % kLooksACall != 0) return;
+        if (news.is_done ? !news.progress && !is_untold_ : !news.progress && ++looks_ % kLooksACall != 0)
+            return;
+        is_untold_ = false;
         call(callbacks_.on_progress, [&] { return nb::cast(latest_); });
     }
 
@@ -182,6 +184,7 @@ class Waiter {
     const RenderCallbacks& callbacks_;
     int interrupts_ = 0, looks_ = 0;
     bool has_begun_ = false;
+    bool is_untold_ = false; ///< the preparation has gone on since the last call
     JobProgress latest_;
     nb::object interrupt_, failure_;
 };

@@ -126,7 +126,7 @@ class LiveSceneTest(unittest.TestCase):
         self.expect_same()
 
     def test_a_stopped_change_keeps_what_was_there(self):
-        mesh, self.scene.meshes["second"] = self.scene.meshes["second"], make_body(200)
+        mesh, self.scene.meshes["second"] = self.scene.meshes["second"], make_body(700)
         with self.assertRaises(relief.Error) as caught:
             self.live.change_scene(self.scene, progress=lambda progress: False)
         self.assertEqual(caught.exception.kind, "failed")
