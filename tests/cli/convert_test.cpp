@@ -172,7 +172,8 @@ TEST_F(Convert, options_that_say_nothing_here_are_refused) {
     expect_refused({"convert", "plane.obj", "--axes", "t,b,n", "-o", "m.obj"}, "--axes goes with --vdm");
     expect_refused({"convert", "plane.obj", "--to", "mudbox", "-o", "m.obj"}, "--to goes with a map");
     expect_refused({"convert", "plane.obj", "--samples", "half", "-o", "m.obj"}, "--samples goes with a map");
-    expect_refused({"convert", "plane.obj", "--subdivision-level", "1", "-o", "m.obj"}, "without a scheme");
+    expect_refused({"convert", "plane.obj", "--subdivision-level", "1", "-o", "m.obj"},
+                   "needs a subdivision scheme");
     expect_refused({"convert", "plane.obj", "-o", "m.exr"}, "written as .obj or .ply");
     expect_refused({"convert", "bump.exr", "--to-scale", "0", "-o", "m.exr"}, "scale of 0");
 }
