@@ -17,14 +17,16 @@ constexpr double kPartOfCell = 0.1;
 constexpr double kNear = 0.25;
 
 /// Boxes about the corners of faces, with as much again on each side: the limit surface of a face depends on
-/// its neighbours.
+/// its neighbours. Wrong indices are passed over: make_surface() refuses them.
 std::vector<Box> find_face_boxes(const Mesh& mesh) {
     std::vector<Box> boxes;
     boxes.reserve(mesh.face_sizes.size());
     size_t corner = 0;
     for (const uint32_t size : mesh.face_sizes) {
         Box box;
-        for (uint32_t k = 0; k < size; ++k) box.extend(mesh.positions[mesh.position_indices[corner + k]]);
+        for (size_t k = corner; k < std::min(corner + size, mesh.position_indices.size()); ++k)
+            if (mesh.position_indices[k] < mesh.positions.size())
+                box.extend(mesh.positions[mesh.position_indices[k]]);
         corner += size;
         const float margin = length(box.extent());
         box.lower = box.lower - Vec3f{margin, margin, margin},

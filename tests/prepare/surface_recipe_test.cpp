@@ -68,6 +68,19 @@ TEST(BaseTolerances, differ_from_face_to_face_of_a_mesh_that_is_close) {
     EXPECT_LT(choose(make_quads(), {}, {0.5f, 0.5f, 0}), 1e-12);
 }
 
+TEST(BaseTolerances, pass_over_indices_that_are_refused_later) {
+    Mesh mesh = make_quads();
+    mesh.position_indices[5] = 1000;
+    mesh.face_sizes.push_back(4);
+    const std::array places = {Affine{}};
+    EXPECT_EQ(choose_base_tolerance(mesh, places, 0, make_view({-2, 0.5f, 0})).of_faces.size(), 3u);
+}
+
+TEST(BaseTolerances, are_finite_without_a_place) {
+    const BaseTolerance tolerance = choose_base_tolerance(make_quads(), {}, 0, make_view({0, 0, 5}));
+    EXPECT_TRUE(std::isfinite(tolerance.of_face(0)));
+}
+
 TEST(BaseTolerances, stay_while_the_camera_moves_a_little) {
     const std::array places = {Affine{}};
     int changes = 0;

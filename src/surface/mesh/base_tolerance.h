@@ -34,7 +34,8 @@ bool is_same_base(const BaseTolerance& then, const BaseTolerance& now, const Bas
 inline int find_tolerance_exponent(double distance) {
     constexpr int kMost = 120;
     if (!(distance > std::exp2(-0.5 * kMost))) return -kMost;
-    return std::min(kMost, int(std::floor(2 * std::log2(distance))));
+    if (distance > std::exp2(0.5 * kMost)) return kMost;
+    return int(std::floor(2 * std::log2(distance)));
 }
 
 } // namespace relief
