@@ -1,4 +1,4 @@
-// What the suite characters renders: generated scenes and mesh files, written to folders that all programs
+// The suite `characters` renders these inputs: generated scenes and mesh files, in folders that all programs
 // read.
 #pragma once
 

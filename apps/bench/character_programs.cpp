@@ -50,7 +50,7 @@ void require(const Measures& measures, const std::vector<std::string>& names,
                         {fmt::format("its output has no measure {}", name), describe_command(words), ""});
 }
 
-/// What Blender answered about itself.
+/// Blender fills this in when it is asked about itself.
 struct BlenderProbe {
     std::string version, missing_relief;
     bool has_relief = false;
@@ -95,7 +95,7 @@ std::vector<std::vector<std::string>> list_blenders(const std::vector<fs::path>&
     }
 }
 
-/// By the numbers of versions as "5.0.1" and "4.5.15 LTS".
+/// Compares the numbers in versions such as "5.0.1" and "4.5.15 LTS".
 bool is_newer(const std::string& a, const std::string& b) {
     const auto list_numbers = [](const std::string& text) {
         std::array<int, 3> numbers{};

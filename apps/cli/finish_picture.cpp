@@ -67,7 +67,7 @@ class DenoisingNotice {
     std::optional<WaitNotice> notice_;
 };
 
-/// Where the noise asked for was not reached everywhere, the line says which was.
+/// Prints how many pixels reached the noise asked for, and the noise of the others.
 void print_noise(const NoiseReport& noise) {
     const auto asked = float(noise.asked); // as it was written
     if (noise.reached_pixels == noise.pixels)
@@ -81,7 +81,7 @@ void print_noise(const NoiseReport& noise) {
                noise.median, noise.most);
 }
 
-/// What ended the render, and how good the picture is.
+/// Prints the reason why the render ended, and how good the picture is.
 void print_ends(const RenderOptions& options, const RenderSettings& settings, const RenderResult& result) {
     if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
     if (options.progress.is_quiet) return;

@@ -20,7 +20,7 @@ struct PendingTimes {
     double start, load_s;
 };
 
-/// With a time limit, sets aside what has passed since the wait began and what denoising will take.
+/// Subtracts the time that has passed since the wait began, and the time for denoising, from a time limit.
 RenderSettings reserve_time(const RenderOptions& options, RenderSettings settings,
                             const PendingTimes& waiting);
 

@@ -1,4 +1,4 @@
-"""What a viewport keeps from one export of the scene to the next: all that Blender does not name as changed."""
+"""A viewport keeps these parts of an export for the next one, unless Blender names them as changed."""
 from typing import NamedTuple
 
 import bpy
@@ -22,7 +22,7 @@ class KeptMeshes(NamedTuple):
 
 
 def find_owners(evaluated):
-    """What an evaluated object's shape is known by."""
+    """Identifies the shape of an evaluated object."""
     original = evaluated.original
     return frozenset(block.session_uid for block in (original, original.data) if block is not None)
 

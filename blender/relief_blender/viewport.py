@@ -35,7 +35,7 @@ def find_view(context, scene, factor=1):
 
 
 def make_settings(scene, view, factor):
-    """Of a picture of `factor` pixels a side of each: the geometry is that of the picture of all pixels."""
+    """Makes settings for a picture with 1 / `factor` of the rows and columns; its geometry is that of the whole picture."""
     own = scene.relief
     return {"size": view.size, "detail_height": view.size[1] * factor, "crop": view.crop,
             "spp": 1 if factor > 1 else own.viewport_samples,

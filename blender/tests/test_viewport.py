@@ -37,7 +37,7 @@ class Engine:
 
 
 def end_at(event):
-    """In place of LiveRenders.render: prepares until an event, and then is stopped."""
+    """Replaces LiveRenders.render: it prepares until an event, and is then stopped."""
     def render(*arguments):
         event.wait(60)
         raise relief.Error("the render was stopped before every pixel had a sample", kind="failed")
@@ -127,7 +127,7 @@ class View(BlenderTest):
         self.depsgraph = bpy.context.evaluated_depsgraph_get()
         self.viewport.update(self.make_context(), self.depsgraph)
         self.draw_until_done(self.make_context())
-        self.follow(lambda: setattr(self.other, "hide_render", True))  # all that making them has changed is told now
+        self.follow(lambda: setattr(self.other, "hide_render", True))  # reports all changes from making them
         return self.viewport._renders.made_surfaces
 
     def move(self, ob, x):

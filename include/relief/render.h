@@ -189,7 +189,7 @@ class RenderObserver {
     virtual double picture_interval_s() const { return std::numeric_limits<double>::infinity(); }
     /// The picture so far, as RenderResult::image has it, without metadata: called as soon as every pixel has
     /// a sample, then every picture_interval_s() or a little later, while no sample is traced. All pixels
-    /// have the same number of samples then, but for those that low noise spares, and unless one pass over
+    /// have the same number of samples then, except those that low noise spares, and unless one pass over
     /// the picture takes more than two seconds. The CPU engine makes passes of a second or the interval,
     /// whichever is longer, as far as that is possible without making them slow.
     virtual void on_picture(Image picture) { (void)picture; }

@@ -145,7 +145,7 @@ class LiveScene:
     array of texels, a file that has not changed since. Whoever writes to an array gives a new one, such as a copy, in its
     place. Pictures are those of render() bit for bit, but without motion blur: values with keys are those of `frame`.
 
-    settings: the other keywords of render() but for denoise, check_maps and mode="tessellated". progress: as of render(); where
+    settings: the other keywords of render() except denoise, check_maps and mode="tessellated". progress: as of render(); where
     it returns False the preparation stops, with an Error whose kind is "failed". release: meshes of the scene lose their arrays
     once the library has them, and stand for what they were from then on. Not for several threads at once."""
 

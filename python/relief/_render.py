@@ -151,7 +151,7 @@ class Session:
     """A scene that stays prepared while its displacement maps are edited and its camera moves: pictures after the first cost
     what changed.
 
-    scene: as for render(). frame: of values with keys, at an instant. settings: the other keywords of render() but for denoise
+    scene: as for render(). frame: of values with keys, at an instant. settings: the other keywords of render() except denoise
     and check_maps. Not for several threads at once."""
 
     def __init__(self, scene: Renderable, frame: Optional[float] = None, **settings: Any) -> None:

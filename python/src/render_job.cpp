@@ -147,7 +147,7 @@ class Waiter {
   private:
     static constexpr int kLooksACall = 2; ///< of on_progress while there is nothing new
 
-    /// What was told last is told again, so that a callback that wants an end need not wait long.
+    /// Repeats the last report, so that a callback that wants to cancel need not wait long.
     void follow_progress(const Mailbox::News& news) {
         if (news.prepared && !has_begun_) latest_.prepared = *news.prepared, is_untold_ = true;
         if (news.progress || news.picture) has_begun_ = true, latest_.prepared = 1;

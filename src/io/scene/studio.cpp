@@ -27,12 +27,12 @@ constexpr std::array<Stop, 6> kBackdrop = {
     {{-90, 0.07f}, {-45, 0.09f}, {-kBand, kHorizon}, {kBand, kHorizon}, {45, 0.10f}, {90, 0.14f}}};
 
 /// A soft light of the picture, degrees; it fades from its middle to its rim.
-struct Lamp {
+struct SoftLight {
     float azimuth, elevation, radius;
     Vec3f radiance; ///< of its middle
 };
-constexpr Lamp kFill = {70, 25, 90, {0.40f, 0.45f, 0.50f}};
-constexpr Lamp kRim = {165, 58, 52, {1.60f, 1.68f, 1.76f}};
+constexpr SoftLight kFill = {70, 25, 90, {0.40f, 0.45f, 0.50f}};
+constexpr SoftLight kRim = {165, 58, 52, {1.60f, 1.68f, 1.76f}};
 
 float smooth_step(float low, float high, float x) {
     const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
@@ -47,19 +47,19 @@ float find_backdrop(float elevation) {
            (high.radiance - low.radiance) * smooth_step(low.elevation, high.elevation, elevation);
 }
 
-Vec3f find_lamp(const Lamp& lamp, const Vec3f& direction) {
-    const float azimuth = lamp.azimuth * kRadians, elevation = lamp.elevation * kRadians;
+Vec3f find_light_radiance(const SoftLight& light, const Vec3f& direction) {
+    const float azimuth = light.azimuth * kRadians, elevation = light.elevation * kRadians;
     const Vec3f middle{std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
                        std::cos(azimuth) * std::cos(elevation)};
     const float angle = std::acos(std::clamp(dot(middle, direction), -1.0f, 1.0f)) / kRadians;
-    return lamp.radiance * smooth_step(lamp.radius, 0, angle);
+    return light.radiance * smooth_step(light.radius, 0, angle);
 }
 
 Vec3f find_radiance(const Vec3f& direction) {
     const float elevation = std::asin(std::clamp(direction.y, -1.0f, 1.0f)) / kRadians;
-    const float above = smooth_step(2 * kBand, 6 * kBand, elevation); // no lamp reaches the horizon
+    const float above = smooth_step(2 * kBand, 6 * kBand, elevation); // no light reaches the horizon
     return kGrey * find_backdrop(elevation) +
-           (find_lamp(kFill, direction) + find_lamp(kRim, direction)) * above;
+           (find_light_radiance(kFill, direction) + find_light_radiance(kRim, direction)) * above;
 }
 
 std::shared_ptr<const Texture> make_studio() {
