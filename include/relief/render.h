@@ -80,9 +80,9 @@ struct ImageSettings {
     double time_limit_s = 0;
     double time_reserved_s = 0; ///< of time_limit_s, for what the caller does before and after the render
     int bounces = 4;            ///< path length, [0, kMaxBounces]; 0: primary ray and direct light only
-    /// Above 0: light that a path finds after its first bounce, by a ray towards a light or by chance, adds
-    /// no more than this to any component. Fewer bright specks, and less light; 0: all of it. The default
-    /// is that of Cycles.
+    /// Above 0: light that a path finds after its first bounce, by a ray towards a light or by chance, is
+    /// scaled down to this mean of its components at most. This removes bright specks, and some light. 0
+    /// keeps all light. Rule and default are those of Cycles.
     float clamp_indirect = 10;
     /// Rows of the picture that levels of detail are chosen for; 0: `height`. A coarse preview that gets the
     /// height of the picture after it has the same geometry, which is then prepared once.

@@ -58,22 +58,21 @@ FN Vec3 limit_color(const Vec3 color) {
     return max(zero, min(color, one));
 }
 
-/// Light that arrives after so many bounces, none above `limit` in any component; 0: no limit. Biased: what
-/// is taken away is missing.
+/// The factor that clamp_indirect multiplies light by.
+FN float find_clamp_scale(const Vec3 light, const float limit, const uint bounces) {
+    float sum = light.x + light.y + light.z;
+    return limit > 0.0f && bounces > 0u && sum > 3.0f * limit ? 3.0f * limit / sum : 1.0f;
+}
+
+/// Light that arrives after so many bounces, scaled so that the mean of its components is at most `limit`; 0:
+/// no limit. The rule is that of Blender's Cycles. It is biased: the light above the limit is lost.
 FN Vec3 clamp_indirect(const Vec3 light, const float limit, const uint bounces) {
-    float brightest = max(max(light.x, light.y), light.z);
-    return limit > 0.0f && bounces > 0u && brightest > limit ? light * (limit / brightest) : light;
+    return light * find_clamp_scale(light, limit, bounces);
 }
 
 /// Depth of the last rays of paths of so many bounces: behind the last vertex one more looks for light alone,
 /// so that there, too, lights found and lights drawn are weighed. Direct light alone is one shadow ray.
 FN uint find_last_depth(const uint bounces) { return bounces > 0u ? bounces + 1u : 0u; }
-
-/// What clamp_indirect multiplies light by.
-FN float find_clamp_scale(const Vec3 light, const float limit, const uint bounces) {
-    float brightest = max(max(light.x, light.y), light.z);
-    return limit > 0.0f && bounces > 0u && brightest > limit ? limit / brightest : 1.0f;
-}
 
 /// Russian roulette (Arvo and Kirk 1990), from the second vertex on. Paths that carry kLeastThroughput or
 /// more all go on: ending them costs more in noise than it saves in rays (docs/results/noise.md).

@@ -121,7 +121,7 @@ def render_relief(folder, mesh, camera, material):
     file = folder / "scene.json"
     file.write_text(json.dumps(scene))
     picture = folder / "relief.exr"
-    subprocess.run([RELIEF, "render", file, "-o", picture, "-q"], check=True)
+    subprocess.run([RELIEF, "render", file, "-o", picture, "--clamp-indirect", "0", "-q"], check=True)
     bitmap = mitsuba.Bitmap(str(picture))
     names = [field.name for field in bitmap.struct_()]
     values = numpy.array(bitmap)
