@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "base/parallel.h"
@@ -12,12 +13,18 @@ namespace relief {
 
 namespace {
 
-std::vector<const Mesh*> list_meshes(const Scene& scene, uint32_t displacement) {
+std::vector<uint32_t> list_meshes(const Scene& scene, uint32_t displacement) {
     std::set<uint32_t> meshes;
     for (const Object& object : scene.objects)
         if (object.displacement == displacement) meshes.insert(object.mesh);
-    std::vector<const Mesh*> list;
-    for (const uint32_t mesh : meshes) list.push_back(&scene.meshes[mesh]);
+    return {meshes.begin(), meshes.end()};
+}
+
+/// Makes the outlines of some meshes, where they are not there yet.
+std::vector<const UvOutlines*> list_outlines(std::span<const uint32_t> meshes, MeshLimits& limits) {
+    limits.make_outlines(meshes);
+    std::vector<const UvOutlines*> list;
+    for (const uint32_t mesh : meshes) list.push_back(&limits.outlines(mesh));
     return list;
 }
 
@@ -39,24 +46,39 @@ class SplineCache {
     std::map<std::pair<const Texture*, SplineForm>, Entry> entries_;
 };
 
-/// Finds the gutters of all tiles of displacements that are not as before, per displacement and tile.
-std::vector<std::vector<GutterFill>> find_gutters(const Scene& scene, const SameParts& same) {
-    std::vector<std::vector<GutterFill>> gutters(scene.displacements.size());
-    std::vector<std::pair<uint32_t, size_t>> wanted;
+/// A tile of a displacement whose gutter is to be found.
+struct WantedGutter {
+    uint32_t displacement;
+    size_t tile;
+    std::vector<const UvOutlines*> meshes;
+};
+
+/// Lists the tiles that are not as before and may have a background.
+std::vector<WantedGutter> list_gutters(const Scene& scene, const SameParts& same, MeshLimits& limits) {
+    std::vector<WantedGutter> wanted;
     for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
         const Displacement& displacement = scene.displacements[k];
-        gutters[k].resize(displacement.tiles.size());
-        for (size_t tile = 0; tile < displacement.tiles.size() && displacement.dilate && !same.images[k];
-             ++tile)
-            wanted.push_back({k, tile});
+        if (!displacement.dilate || same.images[k]) continue;
+        const std::vector<uint32_t> meshes = list_meshes(scene, k);
+        for (size_t tile = 0; tile < displacement.tiles.size() && !meshes.empty(); ++tile)
+            if (may_have_background(*displacement.tiles[tile].texture))
+                wanted.push_back({k, tile, list_outlines(meshes, limits)});
     }
+    return wanted;
+}
+
+/// Finds gutters per displacement and tile, of several tiles at once.
+std::vector<std::vector<GutterFill>> find_gutters(const Scene& scene, const SameParts& same,
+                                                  MeshLimits& limits) {
+    std::vector<std::vector<GutterFill>> gutters(scene.displacements.size());
+    for (uint32_t k = 0; k < scene.displacements.size(); ++k)
+        gutters[k].resize(scene.displacements[k].tiles.size());
+    const std::vector<WantedGutter> wanted = list_gutters(scene, same, limits);
     parallel_for("gutters", wanted.size(), 1, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) {
-            const auto [number, tile] = wanted[k];
+            const auto& [number, tile, meshes] = wanted[k];
             const Displacement& displacement = scene.displacements[number];
-            const std::vector<const Mesh*> meshes = list_meshes(scene, number);
-            if (!meshes.empty())
-                gutters[number][tile] = find_gutter(displacement, displacement.tiles[tile], meshes);
+            gutters[number][tile] = find_gutter(displacement, displacement.tiles[tile], meshes);
         }
     });
     return gutters;
@@ -64,7 +86,8 @@ std::vector<std::vector<GutterFill>> find_gutters(const Scene& scene, const Same
 
 /// Prepares the map of a tile with its gutter; the tile's texture becomes the one that surfaces read.
 void prepare_map(const Displacement& displacement, MapTile& tile, GutterFill gutter,
-                 const std::vector<const Mesh*>& meshes, SplineCache& splines, EditableScene& prepared) {
+                 std::span<const uint32_t> meshes, MeshLimits& limits, SplineCache& splines,
+                 EditableScene& prepared) {
     const void* source = tile.texture.get();
     if (!gutter.copies.empty()) {
         auto filled = std::make_shared<Texture>(*tile.texture);
@@ -76,7 +99,8 @@ void prepare_map(const Displacement& displacement, MapTile& tile, GutterFill gut
         const TexelRectangle all{0, 0, tile.texture->width - 1, tile.texture->height - 1};
         if (!find_texel_range(*tile.texture, all)) refuse_bad_texel(*tile.texture, all);
         OutsideTexels outside;
-        if (displacement.dilate) outside = find_outside_texels(displacement, tile, meshes);
+        if (displacement.dilate)
+            outside = find_outside_texels(displacement, tile, list_outlines(meshes, limits));
         mips = std::make_shared<MipChain>(*tile.texture, std::move(outside), displacement.wrap);
     }
     PreparedMap map;
@@ -128,18 +152,19 @@ void prepare_textures(std::vector<Material>& materials) {
     }
 }
 
-void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before, EditableScene& prepared) {
+void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before, MeshLimits& limits,
+                  EditableScene& prepared) {
     SplineCache splines;
-    std::vector<std::vector<GutterFill>> gutters = find_gutters(scene, same);
+    std::vector<std::vector<GutterFill>> gutters = find_gutters(scene, same, limits);
     for (uint32_t k = 0; k < scene.displacements.size(); ++k) {
         Displacement& displacement = scene.displacements[k];
-        const std::vector<const Mesh*> meshes = list_meshes(scene, k);
+        const std::vector<uint32_t> meshes = list_meshes(scene, k);
         if (same.images[k])
             take_over(*before, same.old_displacements[k], displacement.tiles, prepared);
         else
             for (size_t tile = 0; tile < displacement.tiles.size(); ++tile)
                 prepare_map(displacement, displacement.tiles[tile], std::move(gutters[k][tile]), meshes,
-                            splines, prepared);
+                            limits, splines, prepared);
         // What the surfaces get are coefficients now.
         if (is_smooth(displacement.filter) && !meshes.empty())
             displacement.filter = MapFilter::bspline, displacement.dequantize = false;

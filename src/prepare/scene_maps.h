@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "prepare/mesh_limits.h"
 #include "prepare/scene_parts.h"
 
 namespace relief {
@@ -11,8 +12,10 @@ namespace relief {
 void prepare_textures(std::vector<Material>& materials);
 
 /// Lists the maps and their smaller copies, dilated, smooth ones as coefficients: in copies, since textures
-/// of the scene may be shared. Those that are the same are taken over from `before`.
-void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before, EditableScene& prepared);
+/// of the scene may be shared. Those that are the same are taken over from `before`. `limits` are those of
+/// the scene's meshes.
+void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before, MeshLimits& limits,
+                  EditableScene& prepared);
 
 /// Hands the copies of maps to the surfaces of their displacements.
 void share_mips(const Scene& scene, const SurfaceNumbers& surfaces, PreparedScene& prepared);

@@ -73,8 +73,9 @@ void add_uv_sets(const std::vector<int>& numbers, std::vector<int>& list) {
         if (std::ranges::find(list, number) == list.end()) list.push_back(number);
 }
 
-SurfaceContext make_context(const SurfaceRecipe& recipe, PyramidCache& pyramids) {
-    return {recipe.object_from_world, &pyramids, recipe.uv_sets, recipe.tolerance};
+SurfaceContext make_context(const SurfaceRecipe& recipe, PyramidCache& pyramids,
+                            const SubdivisionMesh* limit = nullptr) {
+    return {recipe.object_from_world, &pyramids, recipe.uv_sets, recipe.tolerance, limit};
 }
 
 /// Makes the surfaces of one scene, of several meshes at once.
@@ -89,7 +90,8 @@ class SurfaceMaker {
                 pyramids_.keep(tile.texture, tile.pyramid);
     }
 
-    Surface make(const SurfaceKey& key, SurfaceChange& change) {
+    /// `limit` may be null.
+    Surface make(const SurfaceKey& key, const SubdivisionMesh* limit, SurfaceChange& change) {
         SurfaceRecipe& recipe = recipes_[change.surface];
         const Displacement* displacement =
             recipe.displacement == kNoIndex ? nullptr : &scene_.displacements[recipe.displacement];
@@ -97,7 +99,8 @@ class SurfaceMaker {
         std::optional<Surface> kept = take(key, recipe);
         if (!kept) {
             change.is_replaced = true;
-            return make_surface(scene_.meshes[recipe.mesh], displacement, make_context(recipe, pyramids_));
+            return make_surface(scene_.meshes[recipe.mesh], displacement,
+                                make_context(recipe, pyramids_, limit));
         }
         kept->corner_tangents.clear();
         if (displacement) change_map(*displacement, recipe.object_from_world, *kept, change);
@@ -210,7 +213,8 @@ SurfaceList list_surfaces(const Scene& scene, const std::vector<Material>& mater
 }
 
 std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, const SameParts& same,
-                                         SceneParts* before, Polygonal polygons, SceneParts& parts) {
+                                         SceneParts* before, Polygonal polygons, MeshLimits& limits,
+                                         SceneParts& parts) {
     std::vector<Surface>& surfaces = parts.prepared.scene->surfaces;
     std::vector<std::vector<SurfaceKey>> keys_of_mesh(scene.meshes.size());
     for (const auto& [key, surface] : list.numbers) keys_of_mesh[std::get<0>(key)].push_back(key);
@@ -224,11 +228,14 @@ std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, 
                              std::accumulate(face_counts.begin(), face_counts.end(), uint64_t(0)));
     parallel_for("make_surfaces", scene.meshes.size(), 1, [&](size_t begin, size_t end) {
         for (size_t mesh = begin; mesh < end; ++mesh) {
-            for (const SurfaceKey& key : keys_of_mesh[mesh]) {
+            const std::vector<SurfaceKey>& keys = keys_of_mesh[mesh];
+            for (const SurfaceKey& key : keys) {
                 const uint32_t surface = list.numbers.at(key);
                 changes[surface].surface = surface;
-                surfaces[surface] = maker.make(key, changes[surface]);
+                surfaces[surface] = maker.make(
+                    key, keys.size() > 1 ? limits.find_or_make(mesh) : limits.find(mesh), changes[surface]);
             }
+            limits.release(uint32_t(mesh));
             const bool is_kept = polygons == Polygonal::keep || (polygons == Polygonal::keep_for_views &&
                                                                  is_subdivided_by_view(scene.meshes[mesh]));
             if (!is_kept) release_mesh(scene, uint32_t(mesh));

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "prepare/mesh_limits.h"
 #include "prepare/scene_parts.h"
 
 namespace relief {
@@ -21,8 +22,10 @@ SurfaceList list_surfaces(const Scene& scene, const std::vector<Material>& mater
 
 /// Makes the surfaces and recipes of `parts`, whose taken_off and view are known. What surfaces are made of
 /// is moved out of `before`; the result tells what of each differs from it, patches of other mips aside.
+/// `limits` are those of the scene's meshes, and are released.
 std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, const SameParts& same,
-                                         SceneParts* before, Polygonal polygons, SceneParts& parts);
+                                         SceneParts* before, Polygonal polygons, MeshLimits& limits,
+                                         SceneParts& parts);
 
 /// Makes those surfaces anew that the view of `config` needs finer or coarser; meshes, displacements and
 /// recipes are those of `parts`. Returns their numbers.

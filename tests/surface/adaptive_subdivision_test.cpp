@@ -210,7 +210,7 @@ TEST(AutomaticLevels, odd_quads_are_joined_with_each_other_or_with_a_boundary) {
     for (const Shape shape : {Shape::cube, Shape::grid}) {
         const Mesh mesh = make_automatic(shape);
         const Polygons polygons = make_polygons(mesh, Welding::equal_points);
-        const Cage cage = SubdivisionMesh(polygons, mesh.subdivision).make_cage();
+        const Cage cage = SubdivisionMesh(polygons, mesh.subdivision).cage();
         for (size_t first = 0; first < cage.is_sharp.size(); ++first) {
             std::vector<uint8_t> is_split(cage.is_sharp.size());
             is_split[first] = 1;

@@ -43,7 +43,8 @@ std::shared_ptr<Texture> make_map(const Mesh& mesh, const Vec3f& inside, const V
 }
 
 GutterFill find(const Displacement& displacement, const Mesh& mesh) {
-    const Mesh* meshes[] = {&mesh};
+    const UvOutlines outlines = make_uv_outlines(mesh);
+    const UvOutlines* meshes[] = {&outlines};
     return find_gutter(displacement, displacement.tiles[0], meshes);
 }
 

@@ -86,10 +86,11 @@ TEST(MipChain, background_does_not_bleed_into_islands) {
     Mesh mesh = test::make_plane();
     mesh.uvs = {{0.2f, 0.15f}, {0.7f, 0.25f}, {0.75f, 0.8f}, {0.22f, 0.78f}};
     Displacement displacement = test::make_displacement(test::make_constant(96, 80, {9, 9, 9}));
-    const Mesh* meshes[] = {&mesh};
+    const UvOutlines outlines = make_uv_outlines(mesh);
+    const UvOutlines* meshes[] = {&outlines};
     auto map = std::make_shared<Texture>(*displacement.tiles[0].texture);
     UvIslands islands(displacement, displacement.tiles[0]);
-    islands.add(mesh);
+    islands.add(outlines);
     islands.visit_covered([](int64_t, int64_t) { return true; },
                           [&](int64_t x, int64_t y) { map->floats[4 * size_t(y * 96 + x)] = 1; });
     displacement.tiles[0].texture = map;
@@ -123,11 +124,13 @@ TEST(MipChain, a_map_without_background_is_averaged_as_it_is) {
     auto map = std::make_shared<Texture>(*displacement.tiles[0].texture);
     for (uint32_t k = 0; k < 64 * 64; ++k) map->floats[4 * k] = (k + k / 64) % 2 ? 1 : -1;
     displacement.tiles[0].texture = map;
-    const Mesh* meshes[] = {&mesh};
+    UvOutlines outlines = make_uv_outlines(mesh);
+    const UvOutlines* meshes[] = {&outlines};
     EXPECT_TRUE(find_outside_texels(displacement, displacement.tiles[0], meshes).uncovered.is_empty());
     // A face over many periods covers everything, and that is known at once.
     displacement.wrap = WrapMode::repeat;
     for (Vec2f& uv : mesh.uvs) uv = {uv.x * 5000, uv.y * 90};
+    outlines = make_uv_outlines(mesh);
     for (size_t k = 0; k < map->floats.size(); ++k) map->floats[k] = 0;
     EXPECT_TRUE(find_outside_texels(displacement, displacement.tiles[0], meshes).uncovered.is_empty());
     EXPECT_TRUE(find_gutter(displacement, displacement.tiles[0], meshes).copies.empty());
@@ -150,7 +153,8 @@ TEST(MipChain, islands_of_automatic_levels_are_those_of_fine_ones) {
     std::vector<TexelMask> masks;
     for (const int level : {kAutoSubdivisionLevel, 5, 0}) {
         const Mesh mesh = make_bulging_sheet(level);
-        const Mesh* meshes[] = {&mesh};
+        const UvOutlines outlines = make_uv_outlines(mesh);
+        const UvOutlines* meshes[] = {&outlines};
         masks.push_back(find_outside_texels(displacement, displacement.tiles[0], meshes).uncovered);
     }
     int differences = 0, of_straight_borders = 0;
@@ -178,7 +182,8 @@ TEST(MipChain, islands_are_those_of_the_subdivided_uvs) {
             }
     }
     displacement.tiles[0].texture = map;
-    const Mesh* meshes[] = {&mesh};
+    const UvOutlines outlines = make_uv_outlines(mesh);
+    const UvOutlines* meshes[] = {&outlines};
     const OutsideTexels outside = find_outside_texels(displacement, displacement.tiles[0], meshes);
     ASSERT_FALSE(outside.uncovered.is_empty());
     const MipChain chain(*map, outside, WrapMode::clamp);

@@ -256,7 +256,8 @@ TEST(Spline, the_background_beside_an_island_does_not_bleed_into_it) {
                 texels->floats[4 * (y * 128 + x) + 2] = is_inside ? 1.0f : 0.0f;
             }
         Displacement displacement = make_smooth(texels, filter, WrapMode::clamp);
-        const Mesh* meshes[] = {&mesh};
+        const UvOutlines outlines = make_uv_outlines(mesh);
+        const UvOutlines* meshes[] = {&outlines};
         GutterFill fill = find_gutter(displacement, displacement.tiles[0], meshes);
         fill.apply(*texels);
         const Surface surface = make_surface(mesh, &displacement, {});

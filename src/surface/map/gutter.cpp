@@ -182,10 +182,10 @@ TexelRectangle GutterFill::follow(Texture& texture, const TexelRectangle& change
 }
 
 GutterFill find_gutter(const Displacement& displacement, const MapTile& tile,
-                       std::span<const Mesh* const> meshes) {
+                       std::span<const UvOutlines* const> meshes) {
     if (!may_have_background(*tile.texture)) return {};
     UvIslands islands(displacement, tile);
-    for (const Mesh* mesh : meshes) islands.add(*mesh);
+    for (const UvOutlines* mesh : meshes) islands.add(*mesh);
     if (islands.is_all_covered()) return {};
     const int spread = displacement.filter == MapFilter::cubic     ? GutterFill::kCubicSpread
                        : displacement.filter == MapFilter::bspline ? GutterFill::kSplineSpread

@@ -9,6 +9,7 @@
 
 #include "relief/scene.h"
 #include "surface/map/texel_range.h"
+#include "surface/mesh/uv_outlines.h"
 
 namespace relief {
 
@@ -34,8 +35,8 @@ struct GutterFill {
 
 /// Texels of a tile along the uv islands' borders with centres outside of all faces. Where most of them
 /// hold one value it is the background's, and these are to take the nearest inside value; else the map is
-/// padded already. Faces with indices out of range are left out.
+/// padded already.
 GutterFill find_gutter(const Displacement& displacement, const MapTile& tile,
-                       std::span<const Mesh* const> meshes);
+                       std::span<const UvOutlines* const> meshes);
 
 } // namespace relief

@@ -92,11 +92,11 @@ TexelRectangle cover_all(const Texture& texture) { return {0, 0, texture.width -
 } // namespace
 
 OutsideTexels find_outside_texels(const Displacement& displacement, const MapTile& tile,
-                                  std::span<const Mesh* const> meshes) {
+                                  std::span<const UvOutlines* const> meshes) {
     const Texture& texture = *tile.texture;
     if (!may_have_background(texture)) return {};
     UvIslands islands(displacement, tile);
-    for (const Mesh* mesh : meshes) islands.add(*mesh);
+    for (const UvOutlines* mesh : meshes) islands.add(*mesh);
     if (islands.is_all_covered()) return {};
     OutsideTexels outside{find_uncovered(texture, displacement.wrap, islands), {}};
     const std::optional<TexelBits> background = find_majority(texture, outside.uncovered);

@@ -27,7 +27,7 @@ struct OutsideTexels {
 /// Of tile `tile`, which the meshes use. The background is the value that more than half of the texels hold
 /// that no face covers; where there is none, or some face runs over a map that repeats, nothing is outside.
 OutsideTexels find_outside_texels(const Displacement& displacement, const MapTile& tile,
-                                  std::span<const Mesh* const> meshes);
+                                  std::span<const UvOutlines* const> meshes);
 
 /// Copies 1, 2, ... of a map, each half as large (rounded up): means of what is not outside. Texels beside
 /// the islands take the nearest inside value, for bilinear fetches. Thread safe but for `update`.

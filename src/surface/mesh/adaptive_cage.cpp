@@ -130,7 +130,7 @@ struct SplitReasons {
 class AdaptiveCage {
   public:
     AdaptiveCage(const SubdivisionMesh& mesh, const Polygons& polygons, const BaseNeeds& needs)
-        : mesh_(mesh), polygons_(polygons), needs_(needs), source_(mesh.make_cage()), cage_(source_) {}
+        : mesh_(mesh), polygons_(polygons), needs_(needs), source_(mesh.cage()), cage_(source_) {}
 
     RefinedMesh run() {
         check_patch_count(source_.face_count(), polygons_.where, kWhat);
@@ -396,7 +396,7 @@ class AdaptiveCage {
     const SubdivisionMesh& mesh_;
     const Polygons& polygons_;
     const BaseNeeds& needs_;
-    const Cage source_;
+    const Cage& source_;
     Cage cage_;
     std::vector<uint32_t> first_bends_; ///< per face of the source, and the end of the last one
     std::vector<FaceBend> bends_;

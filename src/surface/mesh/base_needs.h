@@ -6,6 +6,8 @@
 
 namespace relief {
 
+class SubdivisionMesh;
+
 enum class BasePatches { bilinear, bicubic };
 
 struct BaseNeeds {
@@ -13,6 +15,7 @@ struct BaseNeeds {
     BaseTolerance tolerance;                    ///< of automatic subdivision levels
     const DisplacementChange* change = nullptr; ///< null: nothing is displaced
     bool has_relative_lengths = false;          ///< lengths of displacements are in units of dP/du, dP/dv
+    const SubdivisionMesh* limit = nullptr;     ///< of the mesh, if it is there already
 };
 
 } // namespace relief

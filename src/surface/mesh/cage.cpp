@@ -225,9 +225,8 @@ std::vector<Vec2f> SubdivisionMesh::Implementation::find_base_uv_values(int chan
     return values;
 }
 
-Cage SubdivisionMesh::make_cage() const {
-    const Implementation& self = *implementation_;
-    const osd::Far::TopologyLevel base = self.refiner->GetLevel(0);
+Cage SubdivisionMesh::Implementation::make_cage() const {
+    const osd::Far::TopologyLevel base = refiner->GetLevel(0);
     Cage cage;
     cage.point_count = uint32_t(base.GetNumVertices());
     cage.starts.push_back(0);
@@ -239,8 +238,8 @@ Cage SubdivisionMesh::make_cage() const {
     }
     cage.is_accurate.resize(cage.places.size());
     cage.fits.assign(cage.places.size(), kNoIndex);
-    cage.has_uvs = self.has_uvs;
-    for (size_t set = 0; set < self.uv_sets.size(); ++set) cage.uvs.push_back(self.find_limit_uvs(int(set)));
+    cage.has_uvs = has_uvs;
+    for (size_t set = 0; set < uv_sets.size(); ++set) cage.uvs.push_back(find_limit_uvs(int(set)));
     for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
         const float sharpness = base.GetEdgeSharpness(edge);
         cage.is_sharp.push_back(sharpness >= kInfiniteSharpness);
@@ -251,8 +250,14 @@ Cage SubdivisionMesh::make_cage() const {
         cage.is_regular.push_back(is_regular_point(base, point) && has_quads);
         cage.is_straight.push_back(is_straight_point(base, point) && has_quads);
     }
-    cage.limit_normals = self.find_limit_normals(cage.is_regular);
+    cage.limit_normals = find_limit_normals(cage.is_regular);
     return cage;
+}
+
+const Cage& SubdivisionMesh::cage() const {
+    std::optional<Cage>& cage = implementation_->known_cage;
+    if (!cage) cage = implementation_->make_cage();
+    return *cage;
 }
 
 LimitFace SubdivisionMesh::make_face(uint32_t face) const {

@@ -272,6 +272,11 @@ BaseTolerance choose_tolerance(const SurfaceContext& context, const Polygons& po
     return {find_tolerance_exponent(double(length(box.extent())) / 8192), {}};
 }
 
+/// That of the context, unless it lacks uv sets that are wanted.
+const SubdivisionMesh* get_limit(const SurfaceContext& context) {
+    return context.uv_sets.empty() ? context.limit : nullptr;
+}
+
 Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const SurfaceContext& context,
                        PyramidCache& pyramids) {
     const std::span<const int> uv_sets = context.uv_sets;
@@ -287,7 +292,8 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     const DisplacementChange change(surface.map, displacement.is_udim);
     const BaseNeeds needs{BasePatches::bicubic, choose_tolerance(context, polygons), &change,
                           displacement.type == DisplacementType::vector &&
-                              displacement.lengths == FrameLengths::relative};
+                              displacement.lengths == FrameLengths::relative,
+                          get_limit(context)};
     FramedBase framed = make_framed_base(std::move(polygons), mesh, displacement, needs);
     const std::vector<uint8_t> lacks_uvs = mark_faces_without_uvs(mesh, framed.base.polygons);
     VertexSources sources = split_displaced(surface, framed.base.polygons, displacement.is_udim, lacks_uvs);
@@ -312,7 +318,8 @@ Polygons make_plain_polygons(const Mesh& mesh, const SurfaceContext& context, Ba
     if (mesh.subdivision.scheme == SubdivisionScheme::none)
         return cut_to_triangles(make_polygons(mesh, Welding::none, uv_sets));
     const Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
-    const BaseNeeds needs{BasePatches::bilinear, choose_tolerance(context, polygons), nullptr, false};
+    const BaseNeeds needs{BasePatches::bilinear, choose_tolerance(context, polygons), nullptr, false,
+                          get_limit(context)};
     const SmoothBase base = subdivide(polygons, mesh.subdivision, needs);
     reserve = base.reserve;
     return cut_to_triangles(base.polygons);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -131,12 +132,14 @@ RefinedMesh refine_to_level(SubdivisionMesh& mesh, const Polygons& polygons, con
 } // namespace
 
 SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, const BaseNeeds& needs) {
-    SubdivisionMesh mesh(polygons, subdivision);
     const bool is_automatic =
         subdivision.level == kAutoSubdivisionLevel && subdivision.scheme == SubdivisionScheme::catmark;
+    std::optional<SubdivisionMesh> own;
+    if (!is_automatic || !needs.limit) own.emplace(polygons, subdivision);
+    const SubdivisionMesh& mesh = own ? *own : *needs.limit;
     SmoothBase base;
     const RefinedMesh refined = is_automatic ? refine_adaptively(mesh, polygons, needs, base.reserve)
-                                             : refine_to_level(mesh, polygons, subdivision, needs);
+                                             : refine_to_level(*own, polygons, subdivision, needs);
     base.polygons = make_quads(refined, polygons);
     if (subdivision.scheme == SubdivisionScheme::bilinear) {
         base.polygons.positions = mesh.compute_points();

@@ -42,7 +42,8 @@ struct RefinedMesh {
     uint32_t quad_count() const { return uint32_t(points.size()); }
 };
 
-/// Immutable; its faces may be made by any thread, but each by one at a time.
+/// Immutable; its faces may be made by any thread, but each by one at a time. The cage is made by the first
+/// thread that asks for it, while no other does.
 class SubdivisionMesh {
   public:
     /// The scheme must not be `none`. Throws bad_input with mesh and points for non-manifold or
@@ -58,7 +59,7 @@ class SubdivisionMesh {
     /// Points after `level` steps, not on the limit; after refine().
     std::vector<Vec3f> compute_points() const;
     /// The faces with limit uvs and what is known about their points. For a mesh that is not refined.
-    Cage make_cage() const;
+    const Cage& cage() const;
     /// Limit positions of a face. With automatic levels the mesh keeps what takes long to make. Throws
     /// bad_input for a face without a limit surface.
     LimitFace make_face(uint32_t face) const;

@@ -71,6 +71,7 @@ struct SubdivisionMesh::Implementation {
     /// empty: nothing is kept.
     mutable std::vector<std::shared_ptr<const LimitFace::Surface>> kept_faces;
     mutable std::vector<std::vector<std::shared_ptr<const LimitFace::Surface>>> kept_uv_faces;
+    mutable std::optional<Cage> known_cage; ///< once asked for
     RefinerPointer refiner;
     std::optional<Factory> factory;
 
@@ -87,6 +88,7 @@ struct SubdivisionMesh::Implementation {
     std::vector<Vec2f> find_limit_uv_values(int channel) const;
     std::vector<Vec2f> find_base_uv_values(int channel) const;
     LimitFace make_uv_face(uint32_t face, int channel) const;
+    Cage make_cage() const;
     /// Per corner of the refined mesh.
     std::vector<Vec2f> find_limit_uvs(int channel) const;
     std::vector<BlendedPoint> refine_points() const;

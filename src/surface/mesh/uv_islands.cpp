@@ -6,9 +6,6 @@
 #include "base/stop_request.h"
 #include "math/vec_double.h"
 #include "surface/map/texels.h"
-#include "surface/mesh/limit_outlines.h"
-#include "surface/mesh/polygons.h"
-#include "surface/mesh/subdivision_mesh.h"
 
 namespace relief {
 
@@ -55,31 +52,10 @@ bool may_have_background(const Texture& texture) {
     return census.most() >= kFewestAlike;
 }
 
-void UvIslands::add(const Mesh& mesh) {
+void UvIslands::add(const UvOutlines& outlines) {
     std::vector<Edge> edges;
     Ids ids;
-    if (mesh.subdivision.scheme == SubdivisionScheme::catmark && mesh.subdivision.uv == UvRule::smooth &&
-        mesh.subdivision.level == kAutoSubdivisionLevel) {
-        const Polygons polygons = make_polygons(mesh, Welding::equal_points);
-        visit_limit_outlines(SubdivisionMesh(polygons, mesh.subdivision),
-                             [&](std::span<const Vec2f> uvs) { add_face(uvs, ids, edges); });
-    } else if (mesh.subdivision.scheme == SubdivisionScheme::catmark &&
-               mesh.subdivision.uv == UvRule::smooth) {
-        const Polygons polygons = make_polygons(mesh, Welding::equal_points);
-        for (const std::array<Vec2f, 4>& uvs : SubdivisionMesh(polygons, mesh.subdivision).refine().uvs)
-            add_face(uvs, ids, edges);
-    } else {
-        std::vector<Vec2f> uvs;
-        size_t first = 0;
-        for (const uint32_t size : mesh.face_sizes) {
-            if (first + size > mesh.uv_indices.size()) break;
-            uvs.clear();
-            for (size_t k = first; k < first + size; ++k)
-                if (mesh.uv_indices[k] < mesh.uvs.size()) uvs.push_back(mesh.uvs[mesh.uv_indices[k]]);
-            if (uvs.size() == size) add_face(uvs, ids, edges);
-            first += size;
-        }
-    }
+    for (size_t face = 0; face < outlines.face_count(); ++face) add_face(outlines.face(face), ids, edges);
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.key < b.key; });
     for (size_t k = 0; k < edges.size(); ++k) {
         const bool is_shared = (k > 0 && edges[k - 1].key == edges[k].key) ||

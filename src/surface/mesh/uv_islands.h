@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "relief/scene.h"
+#include "surface/mesh/uv_outlines.h"
 
 namespace relief {
 
@@ -68,8 +69,8 @@ class UvIslands {
     UvIslands(const Displacement& displacement, const MapTile& tile)
         : displacement_(displacement), udim_(tile.udim), texture_(*tile.texture) {}
 
-    /// Leaves out faces with indices out of range. Throws as make_surface where subdivision fails.
-    void add(const Mesh& mesh);
+    /// Adds the faces of a mesh.
+    void add(const UvOutlines& outlines);
 
     /// Some face runs over a map that repeats more than once, so that nothing of it is outside.
     bool is_all_covered() const { return is_all_covered_; }

@@ -182,6 +182,7 @@ inline PatchLevels unpack_levels(uint32_t packed) {
 }
 
 class PyramidCache;
+class SubdivisionMesh;
 
 /// What surfaces are made with, apart from mesh and displacement.
 struct SurfaceContext {
@@ -193,6 +194,9 @@ struct SurfaceContext {
     /// How near automatic subdivision has to come to the limit surface; nullopt: 1/8192 of the diagonal of
     /// the mesh, for callers without a view.
     std::optional<BaseTolerance> tolerance;
+    /// The limit surface of the mesh without further uv sets, if it is there already; used where levels are
+    /// automatic and no further set is wanted.
+    const SubdivisionMesh* limit = nullptr;
 };
 
 /// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark
