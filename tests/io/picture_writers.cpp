@@ -161,6 +161,28 @@ TEST_F(PictureWriters, png_is_tagged_as_srgb_and_data_is_not) {
     EXPECT_FLOAT_EQ(data.floats[data.find_texel(0, 1) + 1], float((16 + 2) * 256 + 16 + 3) / 65535);
 }
 
+TEST_F(PictureWriters, png_of_several_blocks_of_rows_has_each_row_in_its_place) {
+    constexpr int kWidth = 1000, kHeight = 800; // 2.4 megabytes
+    const auto find_byte = [](int y, size_t k) { return uint8_t((uint32_t(y) * 40503u + k * 2531u) >> 7); };
+    const auto fill_row = [&](int y, std::vector<uint8_t>& row) {
+        for (size_t k = 0; k < row.size(); ++k) row[k] = find_byte(y, k);
+    };
+    for (const PngMeaning meaning : {PngMeaning::srgb, PngMeaning::data}) {
+        write_checked(folder_ / "a.png", [&](CheckedFile& file) {
+            encode_png(kWidth, kHeight, {.meaning = meaning}, fill_row, file);
+        });
+        const Image read = read_image(folder_ / "a.png");
+        ASSERT_EQ(read.pixels.size(), size_t(3) * kWidth * kHeight);
+        size_t wrong = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (size_t k = 0; k < 3 * kWidth; ++k) {
+                const float value = read.pixels[size_t(y) * 3 * kWidth + k] * 255;
+                wrong += uint8_t(std::lround(value)) != find_byte(y, k);
+            }
+        EXPECT_EQ(wrong, 0u) << "meaning " << int(meaning);
+    }
+}
+
 TEST_F(PictureWriters, png_may_be_wider_than_the_default_limit_of_libpng) {
     const auto fill_row = [](int, std::vector<uint8_t>& row) { std::fill(row.begin(), row.end(), 7); };
     write_checked(folder_ / "a.png",

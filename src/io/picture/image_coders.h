@@ -26,6 +26,7 @@ struct PngKind {
     int bits = 8;     ///< of a value; of 16 the high byte comes first
     PngMeaning meaning = PngMeaning::srgb;
 };
+/// `fill_row` is called on several threads at the same time, with rows in any order.
 void encode_png(int width, int height, const PngKind& kind, const FillRow<uint8_t>& fill_row,
                 CheckedFile& file);
 /// Radiance RGBE: three mantissas and a common exponent, run lengths.
