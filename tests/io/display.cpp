@@ -1,5 +1,8 @@
 // What PNG files show: display transforms, exposure, backgrounds.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <random>
 
 #include "formulas/tonemap.h"
 #include "io/picture/display_transform.h"
@@ -78,6 +81,57 @@ TEST_F(Display, aces_shows_middle_grey_at_a_tenth_and_white_at_sixteen_times_whi
     EXPECT_GT(show_color({16.3f, 16.3f, 16.3f}, aces).x, 0.99f);
     const Vec3f broken = show_color({NAN, -1, INFINITY}, aces);
     for (const float value : {broken.x, broken.y, broken.z}) EXPECT_TRUE(value >= 0 && value <= 1) << value;
+}
+
+/// From black to far beyond white; every fourth pixel is grey.
+Image make_many_colors(int width, int height) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> stops(-16, 8);
+    Image image;
+    image.width = image.full_width = width, image.height = image.full_height = height;
+    image.channels = {"R", "G", "B"};
+    for (int k = 0; k < width * height; ++k) {
+        const float red = std::exp2(stops(random));
+        for (int c = 0; c < 3; ++c)
+            image.pixels.push_back(k % 4 == 0 || c == 0 ? red : std::exp2(stops(random)));
+    }
+    return image;
+}
+
+TEST_F(Display, estimates_are_within_their_tolerance) {
+    const Image image = make_many_colors(512, 512);
+    for (size_t t = 0; t < std::size(kDisplayTransforms); ++t) {
+        DisplaySettings settings;
+        settings.transform = DisplayTransform(t);
+        if (settings.transform == DisplayTransform::aces) continue;
+        float greatest = 0;
+        for (size_t k = 0; k < image.pixels.size(); k += 3) {
+            const Vec3f color{image.pixels[k], image.pixels[k + 1], image.pixels[k + 2]};
+            const Vec3f estimate = estimate_color(color, settings), exact = show_color(color, settings);
+            for (const float error : {estimate.x - exact.x, estimate.y - exact.y, estimate.z - exact.z})
+                greatest = std::max(greatest, std::fabs(error));
+        }
+        EXPECT_LT(greatest, kEstimateTolerance) << kDisplayTransforms[t];
+    }
+    for (const Vec3f& color : {Vec3f{NAN, -1, INFINITY}, Vec3f{0, 0, 0}, Vec3f{1e30f, 1e-30f, 1}}) {
+        const Vec3f estimate = estimate_color(color, {}), exact = show_color(color, {});
+        EXPECT_NEAR(estimate.x, exact.x, kEstimateTolerance);
+        EXPECT_NEAR(estimate.y, exact.y, kEstimateTolerance);
+        EXPECT_NEAR(estimate.z, exact.z, kEstimateTolerance);
+    }
+}
+
+TEST_F(Display, a_png_has_the_bytes_of_exact_values) {
+    const Image image = make_many_colors(512, 512);
+    Image exact = image; // shown already, so that they are written as they are
+    exact.metadata["relief:display"] = "raw";
+    for (size_t k = 0; k < image.pixels.size(); k += 3) {
+        const Vec3f shown = show_color({image.pixels[k], image.pixels[k + 1], image.pixels[k + 2]}, {});
+        exact.pixels[k] = shown.x, exact.pixels[k + 1] = shown.y, exact.pixels[k + 2] = shown.z;
+    }
+    write_image(image, folder_ / "shown.png");
+    write_image(exact, folder_ / "exact.png");
+    EXPECT_TRUE(read_image(folder_ / "shown.png").pixels == read_image(folder_ / "exact.png").pixels);
 }
 
 TEST_F(Display, slow_gradients_are_dithered_and_whole_steps_are_not) {

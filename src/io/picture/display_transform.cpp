@@ -9,63 +9,13 @@
 
 #include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
+#include "io/picture/agx.h"
 #include "io/picture/picture_library.h"
 #include "math/vec.h"
 
 namespace relief {
 
 namespace {
-
-using Matrix = std::array<Vec3f, 3>; ///< rows
-
-Vec3f multiply(const Matrix& m, const Vec3f& v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
-
-Matrix invert(const Matrix& m) {
-    const Vec3f a = cross(m[1], m[2]), b = cross(m[2], m[0]), c = cross(m[0], m[1]);
-    const float scale = 1 / dot(m[0], a);
-    return {Vec3f{a.x, b.x, c.x} * scale, Vec3f{a.y, b.y, c.y} * scale, Vec3f{a.z, b.z, c.z} * scale};
-}
-
-/// Rec.709 to the inset primaries (figures: Wrensch 2023, "Minimal AgX Implementation").
-constexpr Matrix kInset = {Vec3f{0.842479062253094f, 0.0784335999999992f, 0.0792237451477643f},
-                           Vec3f{0.0423282422610123f, 0.878468636469772f, 0.0791661274605434f},
-                           Vec3f{0.0423756549057051f, 0.0784336f, 0.879142973793104f}};
-
-/// One side of Sobotka's curve: from the pivot with slope 2, a hyperbola that reaches 0 or 1 at the end.
-struct CurveSide {
-    float power, scale;
-};
-
-constexpr float kPivotX = 10.0f / 16.5f, kPivotY = 0.5f, kSlope = 2;
-
-CurveSide make_side(float x, float y, float power) {
-    return {power,
-            std::pow(std::pow(kSlope * x, -power) * (std::pow(kSlope * (x / y), power) - 1), -1 / power)};
-}
-
-float bend(float x) {
-    static const CurveSide kToe = make_side(kPivotX, kPivotY, 3.0f);
-    static const CurveSide kShoulder = make_side(1 - kPivotX, 1 - kPivotY, 3.25f);
-    const CurveSide& side = x < kPivotX ? kToe : kShoulder;
-    const float term = kSlope * std::fabs(x - kPivotX) / side.scale;
-    const float rise = side.scale * term / std::pow(1 + std::pow(term, side.power), 1 / side.power);
-    return x < kPivotX ? kPivotY - rise : kPivotY + rise;
-}
-
-float bend_log(float x) {
-    constexpr float kLowest = -12.47393f, kHighest = 4.026069f; // log2 of 0.18, -10 and +6.5 EV
-    const float log = std::log2(std::max(x, 1e-10f));
-    return bend((std::clamp(log, kLowest, kHighest) - kLowest) / (kHighest - kLowest));
-}
-
-Vec3f tone_map_agx(const Vec3f& linear) {
-    static const Matrix kOutset = invert(kInset);
-    const Vec3f inset = multiply(kInset, linear);
-    const Vec3f shown = multiply(kOutset, {bend_log(inset.x), bend_log(inset.y), bend_log(inset.z)});
-    // The curve is meant for a display of exponent 2.2.
-    const auto to_linear = [](float x) { return std::pow(std::clamp(x, 0.0f, 1.0f), 2.2f); };
-    return {to_linear(shown.x), to_linear(shown.y), to_linear(shown.z)};
-}
 
 Vec3f tone_map(const Vec3f& linear, DisplayTransform transform) {
     switch (transform) {
@@ -76,6 +26,12 @@ Vec3f tone_map(const Vec3f& linear, DisplayTransform transform) {
     default:
         return {std::min(linear.x, 1.0f), std::min(linear.y, 1.0f), std::min(linear.z, 1.0f)};
     }
+}
+
+/// Exposed, without NaN, negative and infinite components.
+Vec3f limit_color(const Vec3f& linear, const DisplaySettings& settings) {
+    const auto limit = [&](float x) { return x > 0 ? std::min(x * settings.factor, 1e6f) : 0.0f; };
+    return {limit(linear.x), limit(linear.y), limit(linear.z)};
 }
 
 Vec3f clamp_to_unit(const Vec3f& c) {
@@ -130,13 +86,17 @@ DisplaySettings read_display_settings(const Image& image) {
 }
 
 Vec3f show_color(const Vec3f& linear, const DisplaySettings& settings) {
-    const auto limit = [&](float x) { return x > 0 ? std::min(x * settings.factor, 1e6f) : 0.0f; };
-    const Vec3f limited{limit(linear.x), limit(linear.y), limit(linear.z)};
+    const Vec3f limited = limit_color(linear, settings);
     if (settings.transform == DisplayTransform::aces) return clamp_to_unit(settings.aces->apply(limited));
     if (settings.transform == DisplayTransform::raw) return clamp_to_unit(limited);
     const Vec3f shown = tone_map(limited, settings.transform);
     const auto encode = [](float x) { return std::min(scalar::encode_srgb(x), 1.0f); };
     return {encode(shown.x), encode(shown.y), encode(shown.z)};
+}
+
+Vec3f estimate_color(const Vec3f& linear, const DisplaySettings& settings) {
+    if (settings.transform != DisplayTransform::agx) return show_color(linear, settings);
+    return get_agx_table().show(limit_color(linear, settings));
 }
 
 float find_exposure(const Image& image) {

@@ -40,6 +40,10 @@ DisplaySettings read_display_settings(const Image& image);
 /// infinite ones as 1.
 Vec3f show_color(const Vec3f& linear, const DisplaySettings& settings);
 
+/// As show_color, but much faster for AgX; each value is at most kEstimateTolerance from that of show_color.
+Vec3f estimate_color(const Vec3f& linear, const DisplaySettings& settings);
+inline constexpr float kEstimateTolerance = 5e-6f;
+
 /// EV at which the geometric mean of the luminances, of pixels that hit something if there are any, becomes
 /// middle grey (0.18); within [-16, 16], 0 for a black picture.
 float find_exposure(const Image& image);

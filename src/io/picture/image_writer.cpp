@@ -73,9 +73,11 @@ class ShownPixel {
         Vec3f color{pixel[channels_[0]], pixel[channels_[1]], pixel[channels_[2]]};
         const float alpha = is_over_ ? std::clamp(pixel[*alpha_channel_], 0.0f, 1.0f) : 1;
         if (alpha > 0 && alpha < 1) color = color * (1 / alpha);
-        Vec3f shown = show_color(color, settings_);
-        if (settings_.background) shown = shown * alpha + *settings_.background * (1 - alpha);
         const float dither = find_dither(x, y);
+        Vec3f shown{};
+        if (settings_.bits == 8) shown = lay_over(estimate_color(color, settings_), alpha);
+        if (settings_.bits != 8 || is_in_doubt(shown, dither))
+            shown = lay_over(show_color(color, settings_), alpha);
         for (const float value : {shown.x, shown.y, shown.z}) byte = write_value(value, dither, byte);
         return settings_.is_transparent ? write_value(alpha, dither, byte) : byte;
     }
@@ -88,11 +90,26 @@ class ShownPixel {
         constexpr uint32_t kStepX = 3242174889u, kStepY = 2447445414u; // 2^32 / 1.3247..., and again
         return float((x * kStepX + y * kStepY) >> 8) * 0x1p-24f;
     }
-    /// Values of whole steps stay what they are.
-    uint8_t* write_value(float value, float dither, uint8_t* byte) const {
+    Vec3f lay_over(const Vec3f& shown, float alpha) const {
+        return settings_.background ? shown * alpha + *settings_.background * (1 - alpha) : shown;
+    }
+    /// In steps of the stored values; the whole part is stored. Values of whole steps stay what they are.
+    float find_step(float value, float dither) const {
         constexpr float kMargin = 0.004f;
         const float greatest = float((1 << settings_.bits) - 1);
-        const auto stored = uint32_t(value * greatest + kMargin + dither * (1 - 2 * kMargin));
+        return value * greatest + kMargin + dither * (1 - 2 * kMargin);
+    }
+    /// The exact value may be stored as another byte than its estimate.
+    bool is_in_doubt(const Vec3f& estimate, float dither) const {
+        constexpr float kDoubt = 255 * kEstimateTolerance + 1e-4f; // and what is lost by rounding
+        const auto is_near_border = [&](float value) {
+            const float step = find_step(value, dither);
+            return uint32_t(step - kDoubt) != uint32_t(step + kDoubt);
+        };
+        return is_near_border(estimate.x) || is_near_border(estimate.y) || is_near_border(estimate.z);
+    }
+    uint8_t* write_value(float value, float dither, uint8_t* byte) const {
+        const auto stored = uint32_t(find_step(value, dither));
         if (settings_.bits == 16) *byte++ = uint8_t(stored >> 8);
         *byte++ = uint8_t(stored);
         return byte;
