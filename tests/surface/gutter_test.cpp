@@ -1,8 +1,18 @@
 // Texels between uv islands: which are read, and what they are given.
 #include "surface/map/gutter.h"
 
+#include <algorithm>
+#include <array>
+#include <map>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
+#include "surface/mesh/uv_islands.h"
+#include "surface/mesh/uv_outlines.h"
 #include "surface/patch/patch_samples.h"
 #include "test_scenes.h"
 
@@ -138,6 +148,56 @@ TEST(Gutter, of_a_tile_counts_the_faces_of_that_tile) {
     ASSERT_FALSE(second.copies.empty());
     for (const GutterFill::Copy& copy : first.copies) EXPECT_LT(copy.from_x, kSize / 2);
     for (const GutterFill::Copy& copy : second.copies) EXPECT_GT(copy.from_x, kSize / 2);
+}
+
+/// Quads in random order that share their sides, but for faces that are left out. The middle is at 0, where
+/// some faces have -0.
+UvOutlines make_outlines_with_holes() {
+    constexpr int kCount = 12;
+    std::vector<std::array<int, 2>> cells;
+    for (int k = 0; k < kCount * kCount; ++k)
+        if (k % 11 != 5) cells.push_back({k % kCount - kCount / 2, k / kCount - kCount / 2});
+    std::mt19937 random(11);
+    std::shuffle(cells.begin(), cells.end(), random);
+    UvOutlines outlines;
+    for (const auto& [x, y] : cells) {
+        const float zero = random() % 2 == 0 ? 0.0f : -0.0f;
+        const auto place = [&](int k) { return k == 0 ? zero : float(k) / 16; };
+        const std::array<Vec2f, 4> corners = {Vec2f{place(x), place(y)}, Vec2f{place(x + 1), place(y)},
+                                              Vec2f{place(x + 1), place(y + 1)},
+                                              Vec2f{place(x), place(y + 1)}};
+        const uint32_t first = random(), step = random() % 2 == 0 ? 1 : 3; // both ways round
+        for (uint32_t k = 0; k < 4; ++k) outlines.uvs.push_back(corners[(first + step * k) % 4]);
+        outlines.end_face();
+    }
+    return outlines;
+}
+
+TEST(Gutter, borders_are_the_edges_of_one_face_only) {
+    using Edge = std::array<double, 4>;
+    const auto make_edge = [](UvIslands::Point a, UvIslands::Point b) {
+        if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) std::swap(a, b);
+        return Edge{a.x, a.y, b.x, b.y};
+    };
+    const UvOutlines outlines = make_outlines_with_holes();
+    std::map<Edge, int> counts;
+    const auto to_texels = [](const Vec2f& uv) { return UvIslands::Point{uv.x * 64.0, (1 - uv.y) * 64.0}; };
+    for (size_t face = 0; face < outlines.face_count(); ++face)
+        for (size_t k = 0; k < 4; ++k) {
+            const std::span<const Vec2f> uvs = outlines.face(face);
+            ++counts[make_edge(to_texels(uvs[k]), to_texels(uvs[(k + 1) % 4]))];
+        }
+    std::vector<Edge> expected, found;
+    for (const auto& [edge, count] : counts)
+        if (count == 1) expected.push_back(edge);
+    const Displacement displacement = test::make_displacement(test::make_constant(kSize, kSize, {0, 0, 0}));
+    UvIslands islands(displacement, displacement.tiles[0]);
+    islands.add(outlines);
+    for (const auto& [a, b] : islands.borders()) found.push_back(make_edge(a, b));
+    std::sort(found.begin(), found.end());
+    EXPECT_GT(found.size(), 60u);
+    EXPECT_LT(found.size(), counts.size() / 2);
+    EXPECT_EQ(found, expected);
 }
 
 TEST(Gutter, follows_changes_like_a_fresh_fill) {

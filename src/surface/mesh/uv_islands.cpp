@@ -26,6 +26,23 @@ bool is_near_edge(const Point& a, const Point& b, const Point& p) {
     return compute_length(to.x - s * along.x, to.y - s * along.y) <= kCoverTolerance;
 }
 
+Point find_middle(std::span<const Vec2f> uvs) {
+    Point middle{};
+    const auto size = double(uvs.size());
+    for (const Vec2f& uv : uvs) middle = {middle.x + double(uv.x) / size, middle.y + double(uv.y) / size};
+    return middle;
+}
+
+/// Equal places have equal bits: -0 counts as 0.
+uint64_t get_place_bits(const Vec2f& uv) {
+    return uint64_t(std::bit_cast<uint32_t>(uv.x + 0.0f)) << 32 | std::bit_cast<uint32_t>(uv.y + 0.0f);
+}
+
+uint64_t mix_bits(uint64_t bits) {
+    bits = (bits ^ bits >> 32) * 0x9e3779b97f4a7c15ull;
+    return bits ^ bits >> 29;
+}
+
 } // namespace
 
 TexelBits get_texel_bits(const Texture& texture, uint32_t x, uint32_t y) {
@@ -54,49 +71,61 @@ bool may_have_background(const Texture& texture) {
 
 void UvIslands::add(const UvOutlines& outlines) {
     std::vector<Edge> edges;
-    Ids ids;
-    for (size_t face = 0; face < outlines.face_count(); ++face) add_face(outlines.face(face), ids, edges);
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.key < b.key; });
-    for (size_t k = 0; k < edges.size(); ++k) {
-        const bool is_shared = (k > 0 && edges[k - 1].key == edges[k].key) ||
-                               (k + 1 < edges.size() && edges[k + 1].key == edges[k].key);
-        if (!is_shared) borders_.push_back(edges[k].ends);
-    }
+    edges.reserve(outlines.uvs.size());
+    if (corners_.empty()) corners_.reserve(outlines.uvs.size()); // each later mesh would copy it
+    for (size_t face = 0; face < outlines.face_count(); ++face) add_face(outlines.face(face), edges);
+    mark_shared(edges);
+    for (const Edge& edge : edges)
+        if (!edge.is_shared) borders_.push_back({corners_[edge.from], corners_[edge.to]});
 }
 
-void UvIslands::add_face(std::span<const Vec2f> uvs, Ids& ids, std::vector<Edge>& edges) {
+void UvIslands::add_face(std::span<const Vec2f> uvs, std::vector<Edge>& edges) {
     if (starts_.size() % kFacesALook == 0) stop_if_asked();
-    const size_t size = uvs.size();
-    Point middle{};
-    for (const Vec2f& uv : uvs)
-        middle = {middle.x + double(uv.x) / double(size), middle.y + double(uv.y) / double(size)};
     Point offset{};
     if (displacement_.is_udim) {
+        const Point middle = find_middle(uvs);
         offset = {std::floor(middle.x), std::floor(middle.y)};
         if (!(offset.x >= 0 && offset.x <= 9 && 1001 + offset.x + 10 * offset.y == udim_)) return;
     }
-    std::vector<uint64_t> face_ids;
-    std::vector<Point> corners;
+    const size_t size = uvs.size(), start = corners_.size();
     for (const Vec2f& uv : uvs) {
-        const uint64_t bits =
-            uint64_t(std::bit_cast<uint32_t>(uv.x + 0.0f)) << 32 | std::bit_cast<uint32_t>(uv.y + 0.0f);
-        face_ids.push_back(ids.try_emplace(bits, ids.size()).first->second);
         const double v = double(uv.y) - offset.y;
-        corners.push_back({(double(uv.x) - offset.x) * texture_.width,
-                           (displacement_.flip_v ? v : 1 - v) * texture_.height});
+        corners_.push_back({(double(uv.x) - offset.x) * texture_.width,
+                            (displacement_.flip_v ? v : 1 - v) * texture_.height});
     }
-    const auto [low, high] = find_ends(corners);
+    const auto [low, high] = find_ends({corners_.data() + start, size});
     const double width = high.x - low.x, height = high.y - low.y;
     const bool is_far = !(std::fabs(low.x) + std::fabs(high.x) < kFarthest &&
                           std::fabs(low.y) + std::fabs(high.y) < kFarthest);
     if (repeats() && (is_far || width > 2.0 * texture_.width || height > 2.0 * texture_.height))
         is_all_covered_ = true;
-    if (is_far) return;
-    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    if (is_far) {
+        corners_.resize(start);
+        return;
+    }
     starts_.push_back(corners_.size());
+    const uint64_t first = get_place_bits(uvs[0]);
+    uint64_t last = first;
     for (size_t k = 0; k < size; ++k) {
-        const size_t next = (k + 1) % size;
-        edges.push_back({std::minmax(face_ids[k], face_ids[next]), {corners[k], corners[next]}});
+        const size_t next = k + 1 < size ? k + 1 : 0;
+        const uint64_t bits = next == 0 ? first : get_place_bits(uvs[next]);
+        edges.push_back({std::min(last, bits), std::max(last, bits), start + k, start + next});
+        last = bits;
+    }
+}
+
+/// Uses a hash table with open addressing, which has at least twice as many entries as there are edges.
+void UvIslands::mark_shared(std::span<Edge> edges) {
+    constexpr size_t kEmpty = ~size_t(0);
+    const size_t size = std::bit_ceil(2 * edges.size() + 1);
+    std::vector<size_t> table(size, kEmpty);
+    for (size_t k = 0; k < edges.size(); ++k) {
+        size_t at = mix_bits(edges[k].low ^ mix_bits(edges[k].high)) & (size - 1);
+        while (table[at] != kEmpty && !edges[table[at]].joins_same(edges[k])) at = (at + 1) & (size - 1);
+        if (table[at] == kEmpty)
+            table[at] = k;
+        else
+            edges[table[at]].is_shared = edges[k].is_shared = true;
     }
 }
 

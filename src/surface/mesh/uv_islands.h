@@ -94,12 +94,14 @@ class UvIslands {
 
   private:
     struct Edge {
-        std::pair<uint64_t, uint64_t> key;
-        std::pair<Point, Point> ends;
+        uint64_t low, high; ///< the bits of its uvs
+        size_t from, to;    ///< in `corners_`
+        bool is_shared = false;
+        bool joins_same(const Edge& other) const { return low == other.low && high == other.high; }
     };
 
-    using Ids = std::unordered_map<uint64_t, uint64_t>; ///< of places, by their bits
-    void add_face(std::span<const Vec2f> uvs, Ids& ids, std::vector<Edge>& edges);
+    void add_face(std::span<const Vec2f> uvs, std::vector<Edge>& edges);
+    static void mark_shared(std::span<Edge> edges);
     bool repeats() const {
         return displacement_.wrap == WrapMode::repeat || displacement_.wrap == WrapMode::mirror;
     }
