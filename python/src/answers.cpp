@@ -8,6 +8,7 @@
 
 #include "cli/statistics_report.h"
 #include "common/report.h"
+#include "exit_gate.h"
 #include "pictures.h"
 #include "settings.h"
 
@@ -23,6 +24,13 @@ nb::object make_answer(JobReport&& report, const RenderSettings& settings) {
     const bool has_picture = result.whole_samples > 0;
     return nb::make_tuple(has_picture ? make_picture(std::move(result.image)) : nb::none(), statistics,
                           warnings, result.is_complete, result.whole_samples, report.failure);
+}
+
+nb::object render_session(Session& session, const RenderSettings& settings, RenderCallbacks callbacks) {
+    callbacks.samples_total = settings.image.spp;
+    const GateVisit visit;
+    const auto work = [&](RenderObserver& observer) { return session.render(&observer); };
+    return make_answer(run_job(work, callbacks), settings);
 }
 
 } // namespace relief::python

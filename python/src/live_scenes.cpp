@@ -69,12 +69,8 @@ class LiveScene {
 
     nb::object render(nb::object on_progress, nb::object on_picture, double picture_interval_s) {
         const auto lock = enter();
-        const RenderCallbacks callbacks{std::move(on_progress), std::move(on_picture), picture_interval_s,
-                                        settings_.image.spp};
-        const GateVisit visit;
-        return make_answer(
-            run_job([&](RenderObserver& observer) { return session_->render(&observer); }, callbacks),
-            settings_);
+        return render_session(*session_, settings_,
+                              {std::move(on_progress), std::move(on_picture), picture_interval_s});
     }
 
     /// `parsed`: a scene with the camera, or null for the one that there is.
