@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "surface/limit_reference.h"
@@ -15,6 +13,7 @@
 #include "surface/mesh/patch_fit.h"
 #include "surface/patch/bicubic.h"
 #include "surface/patch/patch_samples.h"
+#include "surface/shared_sides.h"
 #include "surface/smooth_shapes.h"
 
 namespace relief {
@@ -102,23 +101,7 @@ class AdaptiveSubdivision : public testing::TestWithParam<Shape> {};
 TEST_P(AdaptiveSubdivision, quads_share_their_sides) {
     for (const int exponent : {4, -8, -16}) {
         const Adapted adapted(make_automatic(GetParam()), exponent);
-        const RefinedMesh& refined = adapted.refined;
-        std::map<std::pair<uint32_t, uint32_t>, int> uses;
-        std::vector<int> edge_uses(refined.is_sharp.size());
-        for (uint32_t quad = 0; quad < refined.quad_count(); ++quad)
-            for (size_t k = 0; k < 4; ++k) {
-                const uint32_t a = refined.points[quad][k], b = refined.points[quad][(k + 1) % 4];
-                EXPECT_NE(a, b);
-                ++uses[{std::min(a, b), std::max(a, b)}], ++edge_uses[refined.edges[quad][k]];
-                EXPECT_LE(refined.first_quads[refined.edges[quad][k]], quad);
-            }
-        for (uint32_t quad = 0; quad < refined.quad_count(); ++quad)
-            for (size_t k = 0; k < 4; ++k) {
-                const uint32_t a = refined.points[quad][k], b = refined.points[quad][(k + 1) % 4];
-                const int count = uses[{std::min(a, b), std::max(a, b)}];
-                EXPECT_EQ(count, edge_uses[refined.edges[quad][k]]);
-                EXPECT_TRUE(count == 2 || (count == 1 && refined.is_sharp[refined.edges[quad][k]]));
-            }
+        test::expect_shared_sides(adapted.refined);
     }
 }
 

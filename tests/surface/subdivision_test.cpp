@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <random>
-#include <utility>
-#include <vector>
 
 #include "math/box.h"
 #include "surface/limit_reference.h"
@@ -14,6 +11,7 @@
 #include "surface/mesh/subdivide.h"
 #include "surface/patch/bicubic.h"
 #include "surface/patch/patch_samples.h"
+#include "surface/shared_sides.h"
 #include "surface/smooth_shapes.h"
 
 namespace relief {
@@ -130,30 +128,13 @@ TEST_P(SubdivisionTest, patches_equal_the_limit_surface_at_random_points) {
     EXPECT_LT(worst_fitted, 1e-5 * diagonal);
 }
 
-/// A side that one quad has whole and others in pieces would be used once.
 TEST_P(SubdivisionTest, cut_quads_share_their_sides) {
     for (const int level : {0, 1, 2, 3, 4}) {
         Mesh mesh = test::make_shape(GetParam());
         mesh.subdivision.level = level;
         const Subdivided subdivided(mesh);
         const RefinedMesh& refined = subdivided.refined;
-        std::map<std::pair<uint32_t, uint32_t>, int> uses;
-        std::vector<int> edge_uses(refined.is_sharp.size());
-        for (uint32_t quad = 0; quad < refined.quad_count(); ++quad)
-            for (size_t k = 0; k < 4; ++k) {
-                const uint32_t a = refined.points[quad][k], b = refined.points[quad][(k + 1) % 4];
-                ++uses[{std::min(a, b), std::max(a, b)}], ++edge_uses[refined.edges[quad][k]];
-                EXPECT_LE(refined.first_quads[refined.edges[quad][k]], quad);
-            }
-        bool has_boundary = false;
-        for (uint32_t quad = 0; quad < refined.quad_count(); ++quad)
-            for (size_t k = 0; k < 4; ++k) {
-                const uint32_t a = refined.points[quad][k], b = refined.points[quad][(k + 1) % 4];
-                const int count = uses[{std::min(a, b), std::max(a, b)}];
-                EXPECT_EQ(count, edge_uses[refined.edges[quad][k]]);
-                EXPECT_TRUE(count == 2 || (count == 1 && refined.is_sharp[refined.edges[quad][k]]));
-                has_boundary = has_boundary || count == 1;
-            }
+        const bool has_boundary = test::expect_shared_sides(refined) > 0;
         EXPECT_EQ(has_boundary, std::count(std::begin(kOpenShapes), std::end(kOpenShapes), GetParam()) == 1);
         const bool has_semi_sharp = !mesh.creases.empty() && GetParam() != Shape::creased_cube;
         if (level < 2 || level > 3 || !has_semi_sharp) continue;
