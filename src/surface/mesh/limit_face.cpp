@@ -7,36 +7,6 @@
 
 namespace relief {
 
-namespace {
-
-/// Uniform cubic B-spline weights (de Boor 1978) at s in [0, 1], and their derivatives.
-struct SplineWeights {
-    std::array<double, 4> value, slope;
-
-    explicit SplineWeights(double s) {
-        const double r = 1 - s, s2 = s * s, r2 = r * r;
-        value = {r2 * r / 6, (4 - 6 * s2 + 3 * s2 * s) / 6, (4 - 6 * r2 + 3 * r2 * r) / 6, s2 * s / 6};
-        slope = {-r2 / 2, (3 * s2 - 4 * s) / 2, (4 * r - 3 * r2) / 2, s2 / 2};
-    }
-};
-
-Vec3d blend(const std::array<Vec3d, 4>& c, const std::array<double, 4>& w) {
-    return c[0] * w[0] + c[1] * w[1] + c[2] * w[2] + c[3] * w[3];
-}
-
-LimitSample evaluate_spline(const SplineControls& controls, double u, double v, bool has_twist) {
-    const SplineWeights along(u), across(v);
-    std::array<Vec3d, 4> value, slope; // of the columns at v
-    for (size_t column = 0; column < 4; ++column) {
-        value[column] = blend(controls[column], across.value);
-        slope[column] = blend(controls[column], across.slope);
-    }
-    return {blend(value, along.value), blend(value, along.slope), blend(slope, along.value),
-            has_twist ? blend(slope, along.slope) : Vec3d{}};
-}
-
-} // namespace
-
 LimitFace::LimitFace(std::shared_ptr<const Surface> surface, uint32_t irregular_corners,
                      bool is_bicubic_apart)
     : surface_(std::move(surface)),
@@ -56,6 +26,7 @@ bool LimitFace::is_bicubic_within(const QuadPlace& quad) const {
         low = {std::min(low.x, corner.x), std::min(low.y, corner.y)};
         high = {std::max(high.x, corner.x), std::max(high.y, corner.y)};
     }
+    const uint32_t irregular = has_cells() ? cells_of(quad.part).irregular_corners() : irregular_corners_;
     constexpr int kMostSteps = 12;
     for (int step = 1; step <= kMostSteps; ++step) {
         const double side = std::ldexp(1.0, -step);
@@ -69,9 +40,15 @@ bool LimitFace::is_bicubic_within(const QuadPlace& quad) const {
                                                : i == 0  ? 8u
                                                          : 0u)
                                             : 0u;
-        if ((irregular_corners_ & corner) == 0) return true;
+        if ((irregular & corner) == 0) return true;
     }
     return false;
+}
+
+bool LimitFace::has_cells() const { return !surface_->cells.empty(); }
+
+const LimitCells& LimitFace::cells_of(uint32_t part) const {
+    return surface_->cells[surface_->cells.size() == 1 ? 0 : part];
 }
 
 /// Finds the place of (u, v) in OpenSubdiv's parameters. Returns the size of a part in them.
@@ -84,12 +61,8 @@ double LimitFace::find_place(uint32_t part, double u, double v, double (&place)[
 }
 
 Vec3d LimitFace::evaluate_position(uint32_t part, double u, double v) const {
-    if (!surface_) {
-        const SplineWeights along(u), across(v);
-        std::array<Vec3d, 4> value;
-        for (size_t column = 0; column < 4; ++column) value[column] = blend(controls_[column], across.value);
-        return blend(value, along.value);
-    }
+    if (!surface_) return evaluate_spline_position(controls_, u, v);
+    if (has_cells()) return cells_of(part).evaluate_position(u, v);
     double place[2], p[3];
     find_place(part, u, v, place);
     surface_->surface.Evaluate(place, surface_->points.data(), 3, p);
@@ -98,6 +71,7 @@ Vec3d LimitFace::evaluate_position(uint32_t part, double u, double v) const {
 
 LimitSample LimitFace::evaluate(uint32_t part, double u, double v) const {
     if (!surface_) return evaluate_spline(controls_, u, v, false);
+    if (has_cells()) return cells_of(part).evaluate(u, v, false);
     double place[2], p[3], du[3], dv[3];
     const double scale = find_place(part, u, v, place);
     surface_->surface.Evaluate(place, surface_->points.data(), 3, p, du, dv);
@@ -106,6 +80,7 @@ LimitSample LimitFace::evaluate(uint32_t part, double u, double v) const {
 
 LimitSample LimitFace::evaluate_with_twist(uint32_t part, double u, double v) const {
     if (!surface_) return evaluate_spline(controls_, u, v, true);
+    if (has_cells()) return cells_of(part).evaluate(u, v, true);
     double place[2], p[3], du[3], dv[3], duu[3], duv[3], dvv[3];
     const double scale = find_place(part, u, v, place);
     surface_->surface.Evaluate(place, surface_->points.data(), 3, p, du, dv, duu, duv, dvv);

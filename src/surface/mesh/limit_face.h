@@ -5,25 +5,17 @@
 #include <cstdint>
 #include <memory>
 
-#include "math/vec_double.h"
 #include "surface/mesh/quad_place.h"
+#include "surface/mesh/spline_patch.h"
 
 namespace relief {
 
-/// Limit value and derivatives in the parameters of a face or part.
-struct LimitSample {
-    Vec3d position, du, dv;
-    Vec3d duv{}; ///< only of evaluate_with_twist()
-};
-
-/// Control points [column along u][row along v] of a uniform bicubic B-spline patch; the corners of the face
-/// are near (1, 1), (2, 1), (2, 2) and (1, 2).
-using SplineControls = std::array<std::array<Vec3d, 4>, 4>;
+class LimitCells;
 
 /// The limit surface of one face; for one thread.
 class LimitFace {
   public:
-    struct Surface; ///< as OpenSubdiv evaluates it
+    struct Surface; ///< cells of splines, or as OpenSubdiv evaluates it
     /// `is_bicubic_apart`: except where it is nearest to its irregular corners, as is_bicubic_within() finds.
     LimitFace(std::shared_ptr<const Surface> surface, uint32_t irregular_corners, bool is_bicubic_apart);
     explicit LimitFace(const SplineControls& controls);
@@ -46,6 +38,8 @@ class LimitFace {
     bool is_bicubic_within(const QuadPlace& quad) const;
 
   private:
+    bool has_cells() const;
+    const LimitCells& cells_of(uint32_t part) const;
     double find_place(uint32_t part, double u, double v, double (&place)[2]) const;
 
     std::shared_ptr<const Surface> surface_; ///< null: the face is the spline of `controls_`

@@ -21,8 +21,8 @@ namespace {
 /// Steps beyond the patches, and beyond the creases, that the surface beside irregular points is isolated by.
 constexpr int kStepsBeyond = 7;
 constexpr int kMostSteps = 10;
-/// The same where faces are cut no finer than a tolerance asks for.
-constexpr int kStepsOfAutomatic = 4;
+/// The same of uvs where faces are cut no finer than a tolerance asks for: maps are read between texels.
+constexpr int kStepsOfUvs = 4;
 /// Limit surfaces that are kept, with a few thousand bytes each.
 constexpr std::ptrdiff_t kMostKept = 1 << 15;
 
@@ -128,6 +128,8 @@ RefinerPointer make_refiner(const Polygons& polygons, const Subdivision& subdivi
     return refiner;
 }
 
+} // namespace
+
 bool is_smooth_point(const osd::Far::TopologyLevel& level, int point) {
     if (level.IsVertexNonManifold(point) || level.IsVertexBoundary(point)) return false;
     if (level.GetVertexSharpness(point) > 0) return false;
@@ -135,8 +137,6 @@ bool is_smooth_point(const osd::Far::TopologyLevel& level, int point) {
         if (level.GetEdgeSharpness(edge) > 0) return false;
     return true;
 }
-
-} // namespace
 
 void SubdivisionMesh::Implementation::check_edges(const Polygons& polygons) const {
     const osd::Far::TopologyLevel base = refiner->GetLevel(0);
@@ -206,21 +206,24 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
     self.check_edges(polygons);
     self.check_points(polygons);
     self.check_creases(polygons);
-    Factory::Options options;
     // What is irregular where creases meet stays so when they have worn off.
     const int start = std::max(self.level, int(std::ceil(creases.largest_semi_sharp)));
     const bool is_automatic = subdivision.level == kAutoSubdivisionLevel;
-    const int steps = std::min(start + (is_automatic ? kStepsOfAutomatic : kStepsBeyond), kMostSteps);
-    options.SetApproxLevelSmooth(steps);
-    options.SetApproxLevelSharp(steps);
-    self.factory.emplace(*self.refiner, options);
+    const auto make_factory = [&](int steps_beyond, std::optional<Factory>& factory) {
+        Factory::Options options;
+        options.SetApproxLevelSmooth(std::min(start + steps_beyond, kMostSteps));
+        options.SetApproxLevelSharp(std::min(start + steps_beyond, kMostSteps));
+        factory.emplace(*self.refiner, options);
+    };
+    make_factory(kStepsBeyond, self.factory);
+    make_factory(is_automatic ? kStepsOfUvs : kStepsBeyond, self.uv_factory);
     self.has_smooth_uvs =
         subdivision.uv == UvRule::smooth && subdivision.scheme == SubdivisionScheme::catmark;
     for (const UvTopology& set : self.uv_sets) {
         std::vector<double>& points = self.uv_points.emplace_back();
         for (const Vec2f& uv : set.values) points.insert(points.end(), {uv.x, uv.y, 0});
     }
-    if (subdivision.scheme == SubdivisionScheme::catmark) self.find_bicubic_faces();
+    if (subdivision.scheme == SubdivisionScheme::catmark) self.find_bicubic_faces(), self.find_spline_uvs();
     const auto irregular = std::count(self.is_bicubic.begin(), self.is_bicubic.end(), false);
     if (is_automatic && irregular <= kMostKept) {
         self.kept_faces.resize(polygons.face_count());

@@ -13,6 +13,7 @@
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/far/primvarRefiner.h>
 
+#include "surface/mesh/limit_cells.h"
 #include "surface/mesh/subdivision_mesh.h"
 #include "surface/mesh/uv_topology.h"
 
@@ -43,6 +44,7 @@ struct CellOrigin {
 };
 
 struct LimitFace::Surface {
+    std::vector<LimitCells> cells; ///< one per part, or of a quad; if there are any, nothing else is used
     osd::Bfr::Surface<double> surface;
     std::vector<double> points;
     osd::Bfr::Parameterization parameters;
@@ -51,6 +53,12 @@ struct LimitFace::Surface {
 /// Whether the quads around a point are bicubic on each side of what stays sharp, as far as the point's own
 /// sharpness and edges decide that.
 bool is_regular_point(const osd::Far::TopologyLevel& level, int point);
+
+/// Whether all faces at a point are quads.
+bool has_quads_only(const osd::Far::TopologyLevel& level, int point);
+
+/// Whether no boundary and no crease passes a point.
+bool is_smooth_point(const osd::Far::TopologyLevel& level, int point);
 
 /// Whether one semi-sharp crease, which does not change, is all that keeps a point from being regular.
 bool is_straight_point(const osd::Far::TopologyLevel& level, int point);
@@ -67,26 +75,39 @@ struct SubdivisionMesh::Implementation {
     std::vector<double> positions;
     std::vector<std::vector<double>> uv_points; ///< per set: its values as (u, v, 0)
     std::vector<bool> is_bicubic;               ///< per face: its limit is one polynomial
-    /// Per face: its limit surface as OpenSubdiv made it, and per set that of its uvs, for the next time;
+    /// Per set and face: kSplineUvs if the limit of its uvs is one polynomial, and bit k if uvs are apart
+    /// across side k. Empty: not known for any.
+    std::vector<std::vector<uint8_t>> spline_uvs;
+    static constexpr uint8_t kSplineUvs = 16;
+    /// Per face: its limit surface where it is no polynomial, and per set that of its uvs, for the next time;
     /// empty: nothing is kept.
     mutable std::vector<std::shared_ptr<const LimitFace::Surface>> kept_faces;
     mutable std::vector<std::vector<std::shared_ptr<const LimitFace::Surface>>> kept_uv_faces;
     mutable std::optional<Cage> known_cage; ///< once asked for
     RefinerPointer refiner;
-    std::optional<Factory> factory;
+    std::optional<Factory> factory, uv_factory;
 
     void check_edges(const Polygons& polygons) const;
     void check_points(const Polygons& polygons) const;
     void check_creases(const Polygons& polygons) const;
     void find_bicubic_faces();
+    void find_spline_uvs();
+    uint8_t find_spline_uvs_of(uint32_t face, int channel) const;
     std::pair<uint32_t, bool> find_irregular_corners(uint32_t face) const;
-    bool is_bicubic_in_set(uint32_t face, int channel) const;
-    template <class Read> SplineControls find_controls(uint32_t face, const Read& read_corner) const;
+    bool is_bicubic_in_set(uint32_t face, int channel) const {
+        return !spline_uvs.empty() && (spline_uvs[size_t(channel)][face] & kSplineUvs) != 0;
+    }
+    bool is_seam(uint32_t face, int side, int channel) const;
+    bool has_spline_uvs_at(uint32_t face, int corner, int channel) const;
+    template <class Read, class Sharp>
+    SplineControls find_controls(uint32_t face, const Read& read_corner, const Sharp& is_sharp_side) const;
+    template <class Read> std::vector<LimitCells> find_cells(uint32_t face, const Read& read_corner) const;
     int get_depth(uint32_t face) const;
     std::vector<CellOrigin> find_origins() const;
     std::vector<QuadPlace> find_places() const;
     std::vector<Vec2f> find_limit_uv_values(int channel) const;
     std::vector<Vec2f> find_base_uv_values(int channel) const;
+    LimitFace make_face(uint32_t face) const;
     LimitFace make_uv_face(uint32_t face, int channel) const;
     Cage make_cage() const;
     /// Per corner of the refined mesh.
