@@ -18,28 +18,33 @@ constexpr uint32_t kStepBlock = 8; // texels per side
 constexpr int64_t kMostSteps =
     1024; // texels of a footprint whose own steps are measured, not those of blocks
 
-/// Length of the displacement by the difference of two texels.
-double measure_step(const DisplacementMap& map, const std::array<float, 3>& a,
-                    const std::array<float, 3>& b) {
-    double sum = 0;
-    for (const Vec3f& row : map.matrix) {
-        const double d =
-            double(row.x) * (b[0] - a[0]) + double(row.y) * (b[1] - a[1]) + double(row.z) * (b[2] - a[2]);
-        sum += d * d;
-    }
-    return std::sqrt(sum);
+/// The displacement by a texel, apart from what is the same for all texels.
+std::array<float, 3> find_vector(const DisplacementMap& map, const Texture& texture, uint32_t x, uint32_t y) {
+    const std::array<float, 3> texel = read_texel(texture, x, y);
+    std::array<float, 3> vector;
+    for (size_t k = 0; k < 3; ++k)
+        vector[k] = map.matrix[k].x * texel[0] + map.matrix[k].y * texel[1] + map.matrix[k].z * texel[2];
+    return vector;
+}
+
+float find_square(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+    const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
 }
 
 /// Largest step between neighbours in a rectangle.
 float measure_steps(const DisplacementMap& map, const Texture& texture, const TexelRectangle& texels) {
-    double step = 0;
+    std::vector<std::array<float, 3>> above(texels.x1 - texels.x0 + 1); // the row before
+    float largest = 0;
     for (uint32_t y = texels.y0; y <= texels.y1; ++y)
         for (uint32_t x = texels.x0; x <= texels.x1; ++x) {
-            const std::array<float, 3> here = read_texel(texture, x, y);
-            if (x < texels.x1) step = std::max(step, measure_step(map, here, read_texel(texture, x + 1, y)));
-            if (y < texels.y1) step = std::max(step, measure_step(map, here, read_texel(texture, x, y + 1)));
+            const std::array<float, 3> here = find_vector(map, texture, x, y);
+            std::array<float, 3>& known = above[x - texels.x0];
+            if (y > texels.y0) largest = std::max(largest, find_square(here, known));
+            if (x > texels.x0) largest = std::max(largest, find_square(here, (&known)[-1]));
+            known = here;
         }
-    return float(step);
+    return std::sqrt(largest);
 }
 
 } // namespace
@@ -82,7 +87,8 @@ float DisplacementChange::find_step(size_t tile, uint32_t x, uint32_t y) const {
     return largest;
 }
 
-double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error) const {
+double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error,
+                                       double enough) const {
     const TileChoice tile = is_udim_ ? choose_tile(map_, uvs) : TileChoice{};
     if (tile.index >= map_.tiles.size() || (error.x == 0 && error.y == 0)) return 0;
     const Texture& texture = *map_.tiles[tile.index].texture;
@@ -108,7 +114,24 @@ double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Ve
     // Beyond a border the map goes on with other values.
     if (columns.count != 1 || rows.count != 1 || columns.is_outside_read || rows.is_outside_read)
         return 2 * longest_ * std::min(1.0, texels);
+    const double by_blocks = double(find_step_by_blocks(tile.index, columns, rows)) * texels;
+    if (by_blocks <= enough) return std::min(2 * longest_, by_blocks);
     return std::min(2 * longest_, double(find_largest_step(tile.index, columns, rows)) * texels);
+}
+
+/// No less than find_largest_step().
+float DisplacementChange::find_step_by_blocks(size_t tile, const WrappedRange& columns,
+                                              const WrappedRange& rows) const {
+    float step = 0;
+    for (int j = 0; j < rows.count; ++j)
+        for (int i = 0; i < columns.count; ++i) {
+            const auto [x0, x1] = columns.parts[size_t(i)];
+            const auto [y0, y1] = rows.parts[size_t(j)];
+            for (int64_t y = y0 / kStepBlock; y <= y1 / kStepBlock; ++y)
+                for (int64_t x = x0 / kStepBlock; x <= x1 / kStepBlock; ++x)
+                    step = std::max(step, find_step(tile, uint32_t(x), uint32_t(y)));
+        }
+    return step;
 }
 
 float DisplacementChange::find_largest_step(size_t tile, const WrappedRange& columns,
@@ -119,21 +142,15 @@ float DisplacementChange::find_largest_step(size_t tile, const WrappedRange& col
             sum += range.parts[size_t(k)][1] - range.parts[size_t(k)][0] + 1;
         return sum;
     };
-    const bool is_small = count(columns) * count(rows) <= kMostSteps;
+    if (count(columns) * count(rows) > kMostSteps) return find_step_by_blocks(tile, columns, rows);
     float step = 0;
     for (int j = 0; j < rows.count; ++j)
-        for (int i = 0; i < columns.count; ++i)
-            if (const auto [x0, x1] = columns.parts[size_t(i)]; is_small) {
-                const auto [y0, y1] = rows.parts[size_t(j)];
-                step =
-                    std::max(step, measure_steps(map_, *map_.tiles[tile].texture,
-                                                 {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)}));
-            } else {
-                const auto [y0, y1] = rows.parts[size_t(j)];
-                for (int64_t y = y0 / kStepBlock; y <= y1 / kStepBlock; ++y)
-                    for (int64_t x = x0 / kStepBlock; x <= x1 / kStepBlock; ++x)
-                        step = std::max(step, find_step(tile, uint32_t(x), uint32_t(y)));
-            }
+        for (int i = 0; i < columns.count; ++i) {
+            const auto [x0, x1] = columns.parts[size_t(i)];
+            const auto [y0, y1] = rows.parts[size_t(j)];
+            step = std::max(step, measure_steps(map_, *map_.tiles[tile].texture,
+                                                {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)}));
+        }
     return step;
 }
 

@@ -29,8 +29,9 @@ class DisplacementChange {
     DisplacementChange(const DisplacementMap& map, bool is_udim);
 
     /// Largest change of the displacement anywhere within a quad, if the uvs there are off by at most `error`
-    /// (both coordinates not negative).
-    double find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error) const;
+    /// (both coordinates not negative). A larger bound is returned where that is no more than `enough`, which
+    /// takes less time.
+    double find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error, double enough = 0) const;
 
     /// The largest length that a texel of the map may displace by.
     double longest() const { return longest_; }
@@ -46,6 +47,7 @@ class DisplacementChange {
         std::vector<std::atomic<float>> steps; ///< largest step to a neighbour; negative: not known yet
     };
     float find_step(size_t tile, uint32_t x, uint32_t y) const;
+    float find_step_by_blocks(size_t tile, const WrappedRange& columns, const WrappedRange& rows) const;
     float find_largest_step(size_t tile, const WrappedRange& columns, const WrappedRange& rows) const;
 
     const DisplacementMap& map_;
