@@ -227,9 +227,10 @@ TEST(AutomaticLevels, patches_have_the_limit_uvs_at_their_points) {
     for (uint32_t quad = 0; quad < refined.quad_count(); ++quad) {
         const LimitFace face = source.make_face(quad), uv_face = source.make_uv_face(quad, 0);
         PatchFit to_uvs(face, refined, quad), plain(face, refined, quad);
-        to_uvs.fit_to_uvs(uv_face, refined.uvs[quad]);
         plain.fit();
         const UvMatching matching(uv_face, refined.places[quad], refined.uvs[quad]);
+        for (size_t k = 0; k < 4; ++k) to_uvs.take_side(k, to_uvs.fit_side_to_uvs(k, matching, true));
+        to_uvs.fit_inside_to_uvs(matching);
         const auto measure = [&](const PatchFit& fit, float x, float y) {
             InnerControls controls;
             std::array<Vec3f, 4> corners;

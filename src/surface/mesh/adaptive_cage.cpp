@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <optional>
 
 #include "base/parallel.h"
 #include "surface/mesh/edge_splits.h"
-#include "surface/mesh/face_bend.h"
 #include "surface/mesh/face_splitter.h"
 #include "surface/mesh/limit_patches.h"
 #include "surface/mesh/patch_budget.h"
-#include "surface/mesh/patch_fit.h"
+#include "surface/mesh/patch_judge.h"
 
 namespace relief {
 
@@ -23,8 +21,6 @@ constexpr int kMostRounds = 8;
 constexpr double kManyQuads = 0.3;
 constexpr double kMostSpare = 40;
 constexpr const char* kWhat = "its automatic subdivision";
-/// A cause of error is acted on from this part of the tolerance on.
-constexpr double kSmallestCause = 0.25;
 
 RefinedMesh make_refined(const Cage& cage) {
     RefinedMesh refined;
@@ -101,36 +97,18 @@ class LimitUvs {
     uint32_t number_ = kNoIndex;
 };
 
-/// The limit surfaces of a face, each made when it is first needed.
-struct LimitSurfaces {
-    const SubdivisionMesh& mesh;
-    uint32_t face;
-    std::optional<LimitFace> own_positions, own_uvs;
-
-    const LimitFace& positions() {
-        if (!own_positions) own_positions.emplace(mesh.make_face(face));
-        return *own_positions;
-    }
-    const LimitFace& uvs() {
-        if (!own_uvs) own_uvs.emplace(mesh.make_uv_face(face, 0));
-        return *own_uvs;
-    }
-};
-
-/// Why a quad is to be cut.
-struct SplitReasons {
-    bool splits_u = false, splits_v = false;       ///< its edges along that direction
-    bool splits_fit = false;                       ///< the fitted patch is too far away
-    std::unique_ptr<std::array<Vec3d, 12>> fitted; ///< null: no fit was needed
-    bool depends_on_tolerance = false;             ///< another tolerance might choose another fit
-    double part = 0; ///< of the tolerance that the errors come to, also where no smaller quads are allowed
-};
+double find_side(const Vec2<double>& way) { return std::max(std::fabs(way.x), std::fabs(way.y)); }
 
 /// Chooses the edges to split, round by round.
 class AdaptiveCage {
   public:
     AdaptiveCage(const SubdivisionMesh& mesh, const Polygons& polygons, const BaseNeeds& needs)
-        : mesh_(mesh), polygons_(polygons), needs_(needs), source_(mesh.cage()), cage_(source_) {}
+        : mesh_(mesh),
+          polygons_(polygons),
+          needs_(needs),
+          judge_(mesh, polygons, needs),
+          source_(mesh.cage()),
+          cage_(source_) {}
 
     RefinedMesh run() {
         check_patch_count(source_.face_count(), polygons_.where, kWhat);
@@ -138,7 +116,6 @@ class AdaptiveCage {
         for (uint32_t face = 0; face < source_.face_count(); ++face)
             has_polygons = has_polygons || source_.face_size(face) != 4;
         if (has_polygons) split(std::vector<uint8_t>(source_.is_sharp.size()));
-        measure_bends();
         find_parts();
         for (int round = 0; round < kMostRounds; ++round) {
             std::vector<uint8_t> is_split = choose_splits();
@@ -167,47 +144,23 @@ class AdaptiveCage {
             });
     }
 
-    /// Measures each face, and each part of a polygon.
-    void measure_bends() {
-        first_bends_.push_back(0);
-        for (uint32_t face = 0; face < source_.face_count(); ++face)
-            first_bends_.push_back(first_bends_.back() +
-                                   (source_.face_size(face) == 4 ? 1 : source_.face_size(face)));
-        bends_.resize(first_bends_.back());
-        const bool has_uvs = needs_.change && source_.has_uvs && mesh_.has_smooth_uvs();
-        parallel_for("bends of faces", source_.face_count(), 64, [&](size_t begin, size_t end) {
-            for (uint32_t face = uint32_t(begin); face < end; ++face) {
-                const LimitFace limit = mesh_.make_face(face);
-                std::optional<LimitFace> uvs;
-                if (has_uvs) uvs.emplace(mesh_.make_uv_face(face, 0));
-                const bool is_quad = source_.face_size(face) == 4;
-                for (uint32_t part = 0; first_bends_[face] + part < first_bends_[face + 1]; ++part) {
-                    std::array<bool, 4> is_sharp{};
-                    for (uint32_t k = 0; k < 4; ++k)
-                        is_sharp[k] = is_quad && source_.is_sharp[source_.edges[source_.starts[face] + k]];
-                    bends_[first_bends_[face] + part] =
-                        measure_bend(limit, uvs ? &*uvs : nullptr, part, is_sharp);
-                }
-            }
-        });
-    }
-
     /// One byte per edge; empty: all quads are near enough.
     std::vector<uint8_t> choose_splits() {
         const RefinedMesh refined = make_refined(cage_);
         const std::vector<uint32_t> runs = find_face_runs(refined);
-        std::vector<SplitReasons> reasons(cage_.face_count());
-        parallel_for("errors of patches", runs.size() - 1, 64, [&](size_t begin, size_t end) {
-            for (size_t run = begin; run < end; ++run) {
-                LimitSurfaces limits{mesh_, refined.places[runs[run]].face, {}, {}};
-                for (uint32_t quad = runs[run]; quad < runs[run + 1]; ++quad)
-                    if (!cage_.is_accurate[quad]) reasons[quad] = judge(refined, quad, limits);
-            }
+        std::vector<uint8_t> is_seam(cage_.is_sharp.size());
+        if (needs_.patches == BasePatches::bicubic) {
+            is_seam = find_seams(refined);
+            fit_new_sides(refined, runs, is_seam);
+        }
+        std::vector<Judgement> judgements(cage_.face_count());
+        visit_open_quads(refined, runs, [&](uint32_t quad, LimitSurfaces& limits) {
+            judgements[quad] = judge_.judge(refined, quad, list_sides(refined, quad, is_seam), limits);
         });
         std::vector<uint8_t> is_split(cage_.is_sharp.size()), has_spokes(cage_.point_count);
-        widen_reasons(reasons);
+        widen_splits(judgements);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad)
-            if (!cage_.is_accurate[quad]) mark_splits(quad, reasons[quad], is_split, has_spokes);
+            if (!cage_.is_accurate[quad]) mark_splits(quad, judgements[quad], is_split, has_spokes);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad)
             for (uint32_t k = 0; k < 4; ++k)
                 if (has_spokes[cage_.points[4 * quad + k]])
@@ -216,10 +169,75 @@ class AdaptiveCage {
         return is_split;
     }
 
+    /// Calls `visit(quad, limits)` for all quads that are not known to be accurate, on all threads.
+    template <class Visit>
+    void visit_open_quads(const RefinedMesh& refined, const std::vector<uint32_t>& runs, const Visit& visit) {
+        parallel_for("errors of patches", runs.size() - 1, 64, [&](size_t begin, size_t end) {
+            for (size_t run = begin; run < end; ++run) {
+                LimitSurfaces limits{mesh_, refined.places[runs[run]].face, {}, {}};
+                for (uint32_t quad = runs[run]; quad < runs[run + 1]; ++quad)
+                    if (!cage_.is_accurate[quad]) visit(quad, limits);
+            }
+        });
+    }
+
+    /// Per edge whether its quads have different uvs there.
+    static std::vector<uint8_t> find_seams(const RefinedMesh& refined) {
+        std::vector<uint8_t> is_seam(refined.first_quads.size());
+        for (uint32_t quad = 0; quad < refined.quad_count() && !refined.uvs.empty(); ++quad)
+            for (size_t k = 0; k < 4; ++k) {
+                const uint32_t edge = refined.edges[quad][k], owner = refined.first_quads[edge];
+                if (owner == quad) continue;
+                const std::array<uint32_t, 4>& edges = refined.edges[owner];
+                const size_t other = size_t(std::ranges::find(edges, edge) - edges.begin());
+                const bool is_same_way = refined.points[owner][other] == refined.points[quad][k];
+                const Vec2f &begin = refined.uvs[owner][(other + (is_same_way ? 0 : 1)) % 4],
+                            &end = refined.uvs[owner][(other + (is_same_way ? 1 : 0)) % 4];
+                if (!(refined.uvs[quad][k] == begin && refined.uvs[quad][(k + 1) % 4] == end))
+                    is_seam[edge] = 1;
+            }
+        return is_seam;
+    }
+
+    /// Fits the edges that have no curve yet, each by its lowest quad: quads at them are not accurate yet.
+    void fit_new_sides(const RefinedMesh& refined, const std::vector<uint32_t>& runs,
+                       const std::vector<uint8_t>& is_seam) {
+        const auto first_new = uint32_t(side_fits_.size());
+        uint32_t count = first_new;
+        for (uint32_t& fit : cage_.side_fits)
+            if (fit == kNoIndex) fit = count++;
+        side_fits_.resize(count);
+        visit_open_quads(refined, runs, [&](uint32_t quad, LimitSurfaces& limits) {
+            std::array<bool, 4> is_wanted{}, is_own_seam{};
+            for (size_t k = 0; k < 4; ++k) {
+                const uint32_t edge = refined.edges[quad][k];
+                is_wanted[k] = refined.first_quads[edge] == quad && cage_.side_fits[edge] >= first_new;
+                is_own_seam[k] = is_seam[edge] != 0;
+            }
+            if (is_wanted == std::array<bool, 4>{}) return;
+            const std::array<SideFit, 4> fits =
+                judge_.fit_sides(refined, quad, is_wanted, is_own_seam, limits);
+            for (size_t k = 0; k < 4; ++k)
+                if (is_wanted[k]) side_fits_[cage_.side_fits[refined.edges[quad][k]]] = fits[k];
+        });
+    }
+
+    std::array<JudgedSide, 4> list_sides(const RefinedMesh& refined, uint32_t quad,
+                                         const std::vector<uint8_t>& is_seam) const {
+        std::array<JudgedSide, 4> sides;
+        if (side_fits_.empty()) return sides;
+        for (size_t k = 0; k < 4; ++k) {
+            const uint32_t edge = refined.edges[quad][k];
+            sides[k] = {&side_fits_[cage_.side_fits[edge]],
+                        is_seam[edge] != 0 && refined.first_quads[edge] != quad};
+        }
+        return sides;
+    }
+
     /// Where many quads of a connected part of the mesh are to be cut in both directions, all are: whole
     /// levels need fewer quads than the ways around many single ones, and are exact on bicubic faces.
-    void widen_reasons(std::vector<SplitReasons>& reasons) {
-        const auto is_both = [](const SplitReasons& reason) { return reason.splits_u && reason.splits_v; };
+    void widen_splits(std::vector<Judgement>& reasons) {
+        const auto is_both = [](const Judgement& reason) { return reason.splits_u && reason.splits_v; };
         std::vector<uint32_t> quads(part_count_), wanted(part_count_);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad) {
             const uint32_t part = part_of_face_[cage_.places[quad].face];
@@ -228,8 +246,8 @@ class AdaptiveCage {
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad) {
             const uint32_t part = part_of_face_[cage_.places[quad].face];
             const std::array<Vec2<double>, 4>& c = cage_.places[quad].corners;
-            const bool is_finest =
-                std::min(measure(c[1] - c[0]), measure(c[3] - c[0])) < std::ldexp(1.5, -kFinestPatchLevel);
+            const bool is_finest = std::min(find_side(c[1] - c[0]), find_side(c[3] - c[0])) <
+                                   std::ldexp(1.5, -kFinestPatchLevel);
             if (is_finest || double(wanted[part]) < kManyQuads * double(quads[part])) continue;
             reasons[quad].splits_u = reasons[quad].splits_v = true, reasons[quad].splits_fit = false;
             cage_.is_accurate[quad] = 0;
@@ -255,7 +273,7 @@ class AdaptiveCage {
         }
     }
 
-    void mark_splits(uint32_t quad, const SplitReasons& reasons, std::vector<uint8_t>& is_split,
+    void mark_splits(uint32_t quad, const Judgement& reasons, std::vector<uint8_t>& is_split,
                      std::vector<uint8_t>& has_spokes) {
         const uint32_t* edges = &cage_.edges[4 * quad];
         const uint32_t* points = &cage_.points[4 * quad];
@@ -281,125 +299,13 @@ class AdaptiveCage {
         for (size_t k = 0; k < 4 && !has_reason; ++k) mark(k);
     }
 
-    /// Finds what is too far away at a quad; the quads of the cage are those of `refined`.
-    SplitReasons judge(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits) const {
-        const QuadPlace& place = refined.places[quad];
-        const std::array<Vec2<double>, 4>& c = place.corners;
-        const Vec2<double> u = (c[1] - c[0] + c[2] - c[3]) * 0.5, v = (c[3] - c[0] + c[2] - c[1]) * 0.5;
-        const double tolerance = needs_.tolerance.of_face(polygons_.source_faces[place.face]);
-        const FaceBend& bend =
-            bends_[first_bends_[place.face] +
-                   (first_bends_[place.face + 1] - first_bends_[place.face] > 1 ? place.part : 0)];
-        const BendAlong along_u = find_bend_along(bend, u), along_v = find_bend_along(bend, v);
-        const double smallest = std::min(measure(u), measure(v));
-        SplitReasons reasons;
-        if (needs_.patches == BasePatches::bilinear) {
-            const double twist = bend.position_twist * std::fabs(u.x * v.y - u.y * v.x) / 4;
-            reasons.part = (along_u.position + along_v.position + twist) / tolerance;
-            if (reasons.part <= 1) return reasons;
-            const auto choose = [&](double off, const Vec2<double>& way) {
-                return off + twist / 2 > tolerance / 2 && measure(way) > std::ldexp(1.5, -kFinestPatchLevel);
-            };
-            reasons.splits_u = choose(along_u.position, u), reasons.splits_v = choose(along_v.position, v);
-            return reasons;
-        }
-        const LimitFace& limit = limits.positions();
-        const bool is_aligned = (c[1] - c[0]).y * (c[1] - c[0]).x == 0 &&
-                                (c[3] - c[0]).y * (c[3] - c[0]).x == 0 && c[2] - c[1] == c[3] - c[0];
-        const bool is_exact = is_aligned && limit.is_bicubic_within(place);
-        PatchError error;
-        if (needs_.change && !refined.uvs.empty() && has_curved_uvs(bend))
-            error = fit_to_uvs(refined, quad, limits, bend, reasons);
-        if (is_exact && reasons.fitted && error.off + error.change > tolerance) {
-            // As it is, the patch has no error but that of its uvs.
-            const PatchError plain{0, find_change(refined.uvs[quad], along_u.uv + along_v.uv, bend)};
-            if (plain.change < error.off + error.change)
-                error = plain, reasons.fitted = nullptr, reasons.depends_on_tolerance = true;
-        } else if (!is_exact && reasons.fitted && error.off + error.change > tolerance) {
-            error = choose_nearest(refined, quad, limits, bend, error, reasons);
-        }
-        if (!is_exact && !reasons.fitted) error = fit_nearest(refined, quad, limits, bend, reasons);
-        const double frame_u = find_frame_error(along_u, bend), frame_v = find_frame_error(along_v, bend);
-        reasons.part = (error.off + error.change + frame_u + frame_v) / tolerance;
-        if (reasons.part <= 1) return reasons;
-        const double cause = kSmallestCause * tolerance, finest = std::ldexp(1.5, -kFinestUvLevel);
-        const bool has_bad_uvs = error.change > cause || (is_exact && error.off > cause);
-        reasons.splits_u = (has_bad_uvs || frame_u > cause) && measure(u) > finest;
-        reasons.splits_v = (has_bad_uvs || frame_v > cause) && measure(v) > finest;
-        reasons.splits_fit = !is_exact && error.off > cause && smallest > std::ldexp(1.5, -kFinestPatchLevel);
-        if (reasons.splits_fit) reasons.splits_u = reasons.splits_v = false;
-        return reasons;
-    }
-
-    struct PatchError {
-        double off = 0;    ///< the surface
-        double change = 0; ///< of the displacement, as uvs are not where they belong
-    };
-
-    static bool has_curved_uvs(const FaceBend& bend) {
-        constexpr double kStraight = 1e-7;
-        return std::max({bend.uv[0].x, bend.uv[0].y, bend.uv[1].x, bend.uv[1].y, bend.uv_twist.x,
-                         bend.uv_twist.y}) > kStraight;
-    }
-
-    /// Fits a patch whose parameters follow uvs.
-    PatchError fit_to_uvs(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits,
-                          const FaceBend& bend, SplitReasons& reasons) const {
-        PatchFit fit(limits.positions(), refined, quad);
-        fit.fit_to_uvs(limits.uvs(), refined.uvs[quad]);
-        reasons.fitted = std::make_unique<std::array<Vec3d, 12>>(fit.controls());
-        return {fit.distance(), find_change(refined.uvs[quad], fit.uv_error(), bend)};
-    }
-
-    /// Takes the patch that is nearest to the surface in place of one with the error `before`, if it is
-    /// better.
-    PatchError choose_nearest(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits,
-                              const FaceBend& bend, const PatchError& before, SplitReasons& reasons) const {
-        SplitReasons others;
-        const PatchError nearest = fit_nearest(refined, quad, limits, bend, others);
-        if (nearest.off + nearest.change >= before.off + before.change) return before;
-        reasons.fitted = std::move(others.fitted), reasons.depends_on_tolerance = true;
-        return nearest;
-    }
-
-    PatchError fit_nearest(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits,
-                           const FaceBend& bend, SplitReasons& reasons) const {
-        PatchFit fit(limits.positions(), refined, quad);
-        fit.fit();
-        reasons.fitted = std::make_unique<std::array<Vec3d, 12>>(fit.controls());
-        if (!needs_.change || refined.uvs.empty()) return {fit.distance(), 0};
-        const std::array<Vec2f, 4>& uvs = refined.uvs[quad];
-        Vec2<double> size{};
-        for (const Vec2f& uv : uvs)
-            size = {std::max(size.x, std::fabs(double(uv.x) - double(uvs[0].x))),
-                    std::max(size.y, std::fabs(double(uv.y) - double(uvs[0].y)))};
-        return {fit.distance(), find_change(uvs, size * fit.lag(), bend)};
-    }
-
-    static double measure(const Vec2<double>& way) { return std::max(std::fabs(way.x), std::fabs(way.y)); }
-
-    double find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error,
-                       const FaceBend& bend) const {
-        const double change = needs_.change->find_change(uvs, error);
-        return needs_.has_relative_lengths ? change * bend.stretch : change;
-    }
-
-    /// Error of the displacement by frames that are interpolated across a quad.
-    double find_frame_error(const BendAlong& along, const FaceBend& bend) const {
-        if (!needs_.change || !needs_.change->is_tangent()) return 0;
-        const double bent =
-            needs_.change->uses_tangents() ? std::max(along.normal, along.tangent) : along.normal;
-        const double error = bent * needs_.change->longest();
-        return needs_.has_relative_lengths ? error * bend.stretch : error;
-    }
-
     const SubdivisionMesh& mesh_;
     const Polygons& polygons_;
     const BaseNeeds& needs_;
+    const PatchJudge judge_;
     const Cage& source_;
     Cage cage_;
-    std::vector<uint32_t> first_bends_; ///< per face of the source, and the end of the last one
-    std::vector<FaceBend> bends_;
+    std::vector<SideFit> side_fits_;     ///< as Cage::side_fits numbers them
     std::vector<uint32_t> part_of_face_; ///< connected part of each face of the source
     uint32_t part_count_ = 0;
     std::vector<std::array<Vec3d, 12>> fitted_;

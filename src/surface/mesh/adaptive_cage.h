@@ -8,9 +8,6 @@
 
 namespace relief {
 
-/// Faces are not cut below 2^-k of their sides for the sake of uvs and frames, or for positions.
-inline constexpr int kFinestUvLevel = 3, kFinestPatchLevel = 6;
-
 /// Cuts the faces of a mesh that is not refined. With bicubic patches a face whose neighbourhood is regular
 /// stays whole unless its uvs or, with displacements in tangent space, its frames are curved so much that the
 /// displaced surface would be further away than the tolerance; other faces also where the fitted patch would

@@ -23,6 +23,7 @@ struct Cage {
     std::vector<std::vector<Vec2f>> uvs; ///< per set: limit uvs of the corners
     std::vector<bool> is_sharp;          ///< per edge: a boundary, or a crease that stays
     std::vector<float> semi_sharpness;   ///< per edge: sharpness of a crease that wears off, or 0
+    std::vector<uint32_t> side_fits;     ///< per edge: number of its fitted curve, or kNoIndex
     std::vector<bool> is_regular;        ///< per point: the limit is smooth with finite derivatives around it
     std::vector<bool> is_straight;       ///< per point: regular except for a semi-sharp crease through it
     std::vector<Vec3d> limit_normals;    ///< per point: where it is irregular and smooth, else (0, 0, 0)

@@ -67,19 +67,38 @@ Vec2<double> measure_uvs(const Grid<Vec3d>& uvs, size_t direction) {
 
 } // namespace
 
-FaceBend measure_bend(const LimitFace& face, const LimitFace* uvs, uint32_t part,
+namespace {
+
+void measure_uv_bend(const Grid<Vec3d>& points, FaceBend& bend) {
+    for (size_t direction = 0; direction < 2; ++direction)
+        bend.uv[direction] = measure_uvs(points, direction);
+    const Vec3d twist = find_twist(points);
+    bend.uv_twist = {std::fabs(twist.x), std::fabs(twist.y)};
+}
+
+double place_of(size_t k) { return double(k) / (kCount - 1); }
+
+} // namespace
+
+FaceBend measure_bend(const LimitFace* positions, const LimitFace* uvs, uint32_t part,
                       const std::array<bool, 4>& is_sharp) {
     Grid<Vec3d> points, normals, tangents, uv_points{};
     FaceBend bend;
+    if (!positions) {
+        for (size_t i = 0; i < kCount; ++i)
+            for (size_t j = 0; j < kCount && uvs; ++j)
+                uv_points[i][j] = uvs->evaluate_position(part, place_of(i), place_of(j));
+        measure_uv_bend(uv_points, bend);
+        return bend;
+    }
     for (size_t i = 0; i < kCount; ++i)
         for (size_t j = 0; j < kCount; ++j) {
-            const double u = double(i) / 3, v = double(j) / 3;
-            const LimitSample sample = face.evaluate(part, u, v);
+            const LimitSample sample = positions->evaluate(part, place_of(i), place_of(j));
             points[i][j] = sample.position;
             normals[i][j] = normalize_double(cross(sample.du, sample.dv));
             tangents[i][j] = normalize_double(sample.du);
             if (!uvs) continue;
-            const LimitSample uv = uvs->evaluate(part, u, v);
+            const LimitSample uv = uvs->evaluate(part, place_of(i), place_of(j));
             uv_points[i][j] = uv.position;
             const double turned = uv.du.x * uv.dv.y - uv.du.y * uv.dv.x, area = std::fabs(turned);
             const Vec3d along_u = (sample.du * uv.dv.y - sample.dv * uv.du.y) * (turned < 0 ? -1.0 : 1.0);
@@ -91,13 +110,11 @@ FaceBend measure_bend(const LimitFace& face, const LimitFace* uvs, uint32_t part
         bend.position[direction] = measure_positions(points, normals, direction, is_sharp);
         bend.normal[direction] = measure_directions(normals, direction);
         bend.tangent[direction] = measure_directions(tangents, direction);
-        bend.uv[direction] = measure_uvs(uv_points, direction);
     }
     bend.position_twist = std::fabs(dot(find_twist(points), normals[1][1]));
     bend.normal_twist = compute_length(find_twist(normals));
     bend.tangent_twist = compute_length(find_twist(tangents));
-    const Vec3d twist = find_twist(uv_points);
-    bend.uv_twist = {std::fabs(twist.x), std::fabs(twist.y)};
+    measure_uv_bend(uv_points, bend);
     return bend;
 }
 

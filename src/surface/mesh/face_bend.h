@@ -23,8 +23,8 @@ struct FaceBend {
 };
 
 /// Measures a face, or part `part` of a polygon, at 4 x 4 places. `uvs` may be null: they are bilinear.
-/// is_sharp: one per side.
-FaceBend measure_bend(const LimitFace& face, const LimitFace* uvs, uint32_t part,
+/// `positions` may be null: then only uvs are measured. is_sharp: one per side.
+FaceBend measure_bend(const LimitFace* positions, const LimitFace* uvs, uint32_t part,
                       const std::array<bool, 4>& is_sharp);
 
 /// Distances along the way `step` across the face.

@@ -156,6 +156,8 @@ class FaceSplitter {
     uint32_t add_edge(uint32_t source) {
         result_.is_sharp.push_back(source != kNoIndex && cage_.is_sharp[source]);
         result_.semi_sharpness.push_back(source == kNoIndex ? 0.0f : cage_.semi_sharpness[source]);
+        const bool is_kept = source != kNoIndex && !is_split_[source];
+        result_.side_fits.push_back(is_kept ? cage_.side_fits[source] : kNoIndex);
         return uint32_t(result_.is_sharp.size() - 1);
     }
 

@@ -39,8 +39,16 @@ PatchFit::PatchFit(const LimitFace& face, const RefinedMesh& refined, uint32_t q
 }
 
 void PatchFit::fit() {
-    for (size_t k = 0; k < 4; ++k) fit_edge(k);
+    for (size_t k = 0; k < 4; ++k) take_side(k, fit_side(k));
     fit_inside();
+}
+
+void PatchFit::take_side(size_t k, const SideFit& side) {
+    const bool is_same_way = side.first_point == refined_.points[quad_][k];
+    control_[2 * k] = side.inner[is_same_way ? 0 : 1], control_[2 * k + 1] = side.inner[is_same_way ? 1 : 0];
+    distance_ = std::max(distance_, side.off);
+    uv_error_ = {std::max(uv_error_.x, side.uv_error.x), std::max(uv_error_.y, side.uv_error.y)};
+    has_exact_sides_ = has_exact_sides_ && !side.follows_uvs;
 }
 
 /// Whether the limit is a cubic along a side between regular points: only along the axes of a face.
@@ -49,9 +57,13 @@ bool PatchFit::is_cubic(size_t k) const {
     return refined_.is_adaptive ? is_in_bicubic_part_ : !refined_.is_bent[refined_.edges[quad_][k]];
 }
 
+bool PatchFit::has_exact_side(size_t k) const {
+    return is_regular_[k] && is_regular_[(k + 1) % 4] && is_cubic(k);
+}
+
 bool PatchFit::is_exact() const {
-    bool is_exact = true;
-    for (size_t k = 0; k < 4; ++k) is_exact = is_exact && is_regular_[k] && is_cubic(k);
+    bool is_exact = has_exact_sides_;
+    for (size_t k = 0; k < 4; ++k) is_exact = is_exact && has_exact_side(k);
     return is_exact;
 }
 
@@ -90,22 +102,25 @@ Vec3d PatchFit::flatten(const Vec3d& control, size_t k) const {
     return control - normal_[k] * dot(normal_[k], control - corner_[k]);
 }
 
-void PatchFit::fit_edge(size_t k) {
+SideFit PatchFit::fit_side(size_t k) {
     const size_t next = (k + 1) % 4;
     Curve curve = {corner_[k], corner_[k] + to_next_[k] * (1.0 / 3),
                    corner_[next] + to_previous_[next] * (1.0 / 3), corner_[next]};
-    const bool has_slopes = is_regular_[k] && is_regular_[next];
-    if (!has_slopes || !is_cubic(k)) {
+    SideFit fit;
+    fit.first_point = refined_.points[quad_][k];
+    for (size_t n = 0; n < kSideSamples; ++n) fit.places[n] = place_of_side_sample(n);
+    if (!has_exact_side(k)) {
         std::array<Vec3d, kFitCount> targets;
         for (int sample = 0; sample < kFitCount; ++sample)
             targets[size_t(sample)] = evaluate_edge(k, place_of_fit(sample));
-        const double distance = fit_curve(curve, targets, has_slopes && refined_.is_adaptive, negligible_);
+        const bool has_slopes = is_regular_[k] && is_regular_[next];
+        fit.off = fit_curve(curve, targets, has_slopes && refined_.is_adaptive, negligible_);
         const bool is_sharp = refined_.is_sharp[refined_.edges[quad_][k]];
         if (!is_regular_[k] && !is_sharp) curve[1] = flatten(curve[1], k);
         if (!is_regular_[next] && !is_sharp) curve[2] = flatten(curve[2], next);
-        distance_ = std::max(distance_, distance);
     }
-    control_[2 * k] = curve[1], control_[2 * k + 1] = curve[2];
+    fit.inner = {curve[1], curve[2]};
+    return fit;
 }
 
 namespace {

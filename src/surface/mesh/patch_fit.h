@@ -5,12 +5,14 @@
 #include <array>
 #include <span>
 
+#include "surface/mesh/side_fit.h"
 #include "surface/mesh/subdivision_mesh.h"
 #include "surface/mesh/uv_matching.h"
 
 namespace relief {
 
-/// One quad of the refined mesh; derivatives are by the quad's parameters.
+/// One quad of the refined mesh; derivatives are by the quad's parameters. First its sides are fitted or
+/// taken, then its inside, which follows them.
 class PatchFit {
   public:
     /// Evaluates the corners. Refers to its arguments.
@@ -18,8 +20,21 @@ class PatchFit {
 
     /// Finds the control points of the patch that comes nearest to the surface.
     void fit();
-    /// Finds those of a patch whose uvs, bilinear between `uvs` at the corners, are the limit uvs as well.
-    void fit_to_uvs(const LimitFace& uv_face, const std::array<Vec2f, 4>& uvs);
+
+    /// Finds the curve that comes nearest to side k; its `uv_error` is left at 0.
+    SideFit fit_side(size_t k);
+    /// Finds the curve of side k whose points have the limit uvs that the quad interpolates along it. With
+    /// `may_leave_side` they are looked for beside the side, too.
+    SideFit fit_side_to_uvs(size_t k, const UvMatching& uvs, bool may_leave_side);
+    /// Takes a curve that was fitted by this quad or by the one across the side.
+    void take_side(size_t k, const SideFit& side);
+    /// Whether side k is a cubic that fit_side() does not change.
+    bool has_exact_side(size_t k) const;
+
+    /// Finds the inner control points that come nearest to the surface.
+    void fit_inside();
+    /// Finds those of a patch whose uvs, bilinear between the corners, are the limit uvs as well.
+    void fit_inside_to_uvs(const UvMatching& uvs);
 
     const Vec3d& corner(size_t k) const { return corner_[k]; }
     const Vec3d& normal(size_t k) const { return normal_[k]; }
@@ -31,7 +46,7 @@ class PatchFit {
     double distance() const { return distance_; }
     /// How far along u or v samples are on the patch from where they are on the face, in parts of the patch.
     double lag() const { return lag_; }
-    /// After fit_to_uvs(): how far uvs are off at most, per coordinate.
+    /// How far uvs are off at most, per coordinate: on the sides, and inside after fit_inside_to_uvs().
     const Vec2<double>& uv_error() const { return uv_error_; }
 
   private:
@@ -44,21 +59,21 @@ class PatchFit {
     Vec3d evaluate_edge(size_t k, double s) const;
     Vec3d find_normal(size_t k, const LimitSample& sample) const;
     Vec3d flatten(const Vec3d& control, size_t k) const;
-    void fit_edge(size_t k);
-    void fit_inside();
 
     struct Sample {
         Vec3d target;
         double x, y; ///< of the target on the face
         double u, v; ///< of the nearest point of the patch
     };
+    struct Misses {
+        double off = 0;          ///< largest distance of the surface
+        Vec2<double> uv_error{}; ///< largest one per coordinate
+    };
     double project(Sample& sample) const;
     double measure_beside_sides() const;
     double project_all(std::array<Sample, 25>& samples);
-    void fit_edge_to_uvs(size_t k, const UvMatching& uvs, bool may_leave_face);
-    void fit_inside_to_uvs(const UvMatching& uvs);
     Vec3d blend(double x, double y) const;
-    void add_uv_error(const UvMatching::Match& match, const Vec3d& miss);
+    void add_miss(const UvMatching::Match& match, const Vec3d& miss, Misses& misses) const;
     void solve_inside(std::span<const Sample> samples);
 
     const LimitFace& face_;
@@ -67,6 +82,7 @@ class PatchFit {
     const QuadPlace& place_;
     std::array<bool, 4> is_regular_{};
     bool is_in_bicubic_part_ = false;
+    bool has_exact_sides_ = true; ///< those that were taken are what fit_side() finds
     std::array<Vec3d, 4> corner_{}, normal_{}, to_next_{}, to_previous_{}, twist_{};
     std::array<Vec3d, 12> control_{};
     double distance_ = 0, lag_ = 0, negligible_ = 0;

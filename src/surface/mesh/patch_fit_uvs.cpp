@@ -10,23 +10,14 @@ namespace relief {
 
 namespace {
 
-constexpr int kInnerCount = 3, kEdgeCount = 3; // samples per direction
+constexpr size_t kInnerCount = 3; // samples per direction
 
-double place_of(int k, int count) { return double(k + 1) / (count + 1); }
+double place_of_inner_sample(size_t k) { return double(k + 1) / (kInnerCount + 1); }
 
 } // namespace
 
-void PatchFit::fit_to_uvs(const LimitFace& uv_face, const std::array<Vec2f, 4>& uvs) {
-    distance_ = lag_ = 0, uv_error_ = {};
-    const UvMatching matching(uv_face, place_, uvs);
-    const bool is_bicubic = face_.is_bicubic() && uv_face.is_bicubic();
-    for (size_t k = 0; k < 4; ++k)
-        fit_edge_to_uvs(k, matching, is_bicubic && !refined_.is_sharp[refined_.edges[quad_][k]]);
-    fit_inside_to_uvs(matching);
-}
-
 /// Adds what a miss of the limit surface comes to: at right angles to it, and in uvs along it.
-void PatchFit::add_uv_error(const UvMatching::Match& match, const Vec3d& miss) {
+void PatchFit::add_miss(const UvMatching::Match& match, const Vec3d& miss, Misses& misses) const {
     const Vec2<double> at = find_place(match.place.x, match.place.y);
     const LimitSample sample = face_.evaluate(place_.part, at.x, at.y);
     const std::array<Vec2<double>, 4>& c = place_.corners;
@@ -36,55 +27,65 @@ void PatchFit::add_uv_error(const UvMatching::Match& match, const Vec3d& miss) {
                 dy = sample.du * along_y.x + sample.dv * along_y.y;
     const double xx = dot(dx, dx), xy = dot(dx, dy), yy = dot(dy, dy), determinant = xx * yy - xy * xy;
     if (!(determinant > 1e-6 * xx * yy)) {
-        distance_ = std::max(distance_, compute_length(miss));
+        misses.off = std::max(misses.off, compute_length(miss));
         return;
     }
-    distance_ = std::max(distance_, std::fabs(dot(miss, cross(dx, dy))) / std::sqrt(determinant));
+    misses.off = std::max(misses.off, std::fabs(dot(miss, cross(dx, dy))) / std::sqrt(determinant));
     const double a = dot(miss, dx), b = dot(miss, dy);
     const double x = (a * yy - b * xy) / determinant, y = (b * xx - a * xy) / determinant;
-    uv_error_.x = std::max(uv_error_.x, match.error.x + std::fabs(match.du.x * x + match.dv.x * y));
-    uv_error_.y = std::max(uv_error_.y, match.error.y + std::fabs(match.du.y * x + match.dv.y * y));
+    misses.uv_error.x =
+        std::max(misses.uv_error.x, match.error.x + std::fabs(match.du.x * x + match.dv.x * y));
+    misses.uv_error.y =
+        std::max(misses.uv_error.y, match.error.y + std::fabs(match.du.y * x + match.dv.y * y));
 }
 
-void PatchFit::fit_edge_to_uvs(size_t k, const UvMatching& uvs, bool may_leave_face) {
+SideFit PatchFit::fit_side_to_uvs(size_t k, const UvMatching& uvs, bool may_leave_side) {
     const size_t next = (k + 1) % 4;
-    std::array<UvMatching::Match, kEdgeCount> matches;
-    std::array<Vec3d, kEdgeCount> targets;
+    std::array<UvMatching::Match, kSideSamples> matches;
+    std::array<Vec3d, kSideSamples> targets;
     PointFit fit(2);
-    for (int n = 0; n < kEdgeCount; ++n) {
-        const double s = place_of(n, kEdgeCount);
+    SideFit side;
+    side.first_point = refined_.points[quad_][k], side.follows_uvs = true;
+    for (size_t n = 0; n < kSideSamples; ++n) {
+        const double s = place_of_side_sample(n);
         const Vec2<double> place = find_place_on_side(k, s);
-        UvMatching::Match& match = matches[size_t(n)];
-        match = may_leave_face ? uvs.match(place.x, place.y) : uvs.match_on_side(k, s);
-        targets[size_t(n)] = evaluate(match.place.x, match.place.y);
+        matches[n] = may_leave_side ? uvs.match(place.x, place.y) : uvs.match_on_side(k, s);
+        side.places[n] = find_place_along_side(k, matches[n].place);
+        targets[n] = evaluate(matches[n].place.x, matches[n].place.y);
         const std::array<double, 4> w = CubicWeights(s).value;
-        fit.add({w[1], w[2]}, targets[size_t(n)] - corner_[k] * w[0] - corner_[next] * w[3]);
+        fit.add({w[1], w[2]}, targets[n] - corner_[k] * w[0] - corner_[next] * w[3]);
     }
     std::array<Vec3d, 4> inner = fit.solve();
     const bool is_sharp = refined_.is_sharp[refined_.edges[quad_][k]];
     if (!is_regular_[k] && !is_sharp) inner[0] = flatten(inner[0], k);
     if (!is_regular_[next] && !is_sharp) inner[1] = flatten(inner[1], next);
-    control_[2 * k] = inner[0], control_[2 * k + 1] = inner[1];
-    for (int n = 0; n < kEdgeCount; ++n) {
-        const std::array<double, 4> w = CubicWeights(place_of(n, kEdgeCount)).value;
-        add_uv_error(matches[size_t(n)], corner_[k] * w[0] + inner[0] * w[1] + inner[1] * w[2] +
-                                             corner_[next] * w[3] - targets[size_t(n)]);
+    side.inner = {inner[0], inner[1]};
+    Misses misses;
+    for (size_t n = 0; n < kSideSamples; ++n) {
+        const std::array<double, 4> w = CubicWeights(place_of_side_sample(n)).value;
+        add_miss(matches[n],
+                 corner_[k] * w[0] + inner[0] * w[1] + inner[1] * w[2] + corner_[next] * w[3] - targets[n],
+                 misses);
     }
+    side.off = misses.off, side.uv_error = misses.uv_error;
+    return side;
 }
 
 void PatchFit::fit_inside_to_uvs(const UvMatching& uvs) {
     std::array<UvMatching::Match, kInnerCount * kInnerCount> matches;
     std::array<Sample, kInnerCount * kInnerCount> samples;
-    for (int a = 0; a < kInnerCount; ++a)
-        for (int b = 0; b < kInnerCount; ++b) {
-            const double x = place_of(a, kInnerCount), y = place_of(b, kInnerCount);
-            const size_t k = size_t(a * kInnerCount + b);
+    for (size_t a = 0; a < kInnerCount; ++a)
+        for (size_t b = 0; b < kInnerCount; ++b) {
+            const double x = place_of_inner_sample(a), y = place_of_inner_sample(b);
+            const size_t k = a * kInnerCount + b;
             matches[k] = uvs.match(x, y);
             samples[k] = {evaluate(matches[k].place.x, matches[k].place.y), x, y, x, y};
         }
     solve_inside(samples);
+    Misses misses{distance_, uv_error_};
     for (size_t k = 0; k < samples.size(); ++k)
-        add_uv_error(matches[k], blend(samples[k].x, samples[k].y) - samples[k].target);
+        add_miss(matches[k], blend(samples[k].x, samples[k].y) - samples[k].target, misses);
+    distance_ = misses.off, uv_error_ = misses.uv_error;
 }
 
 Vec3d PatchFit::blend(double x, double y) const {

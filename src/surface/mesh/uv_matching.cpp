@@ -21,6 +21,10 @@ Vec2<double> find_place_on_side(size_t k, double s) {
     return {k == 0 ? s : k == 1 ? 1 : k == 2 ? 1 - s : 0, k == 0 ? 0 : k == 1 ? s : k == 2 ? 1 : 1 - s};
 }
 
+double find_place_along_side(size_t k, const Vec2<double>& place) {
+    return k == 0 ? place.x : k == 1 ? place.y : k == 2 ? 1 - place.x : 1 - place.y;
+}
+
 UvMatching::UvMatching(const LimitFace& uv_face, const QuadPlace& place, const std::array<Vec2f, 4>& uvs)
     : uv_face_(uv_face), place_(place) {
     for (size_t k = 0; k < 4; ++k) uvs_[k] = {uvs[k].x, uvs[k].y};
@@ -38,6 +42,14 @@ UvMatching::Match UvMatching::evaluate(const Vec2<double>& at, const Vec2<double
         return Vec2<double>{uv.du.x * way.x + uv.dv.x * way.y, uv.du.y * way.x + uv.dv.y * way.y};
     };
     return {at, {wanted.x - uv.position.x, wanted.y - uv.position.y}, derive(along_x), derive(along_y)};
+}
+
+Vec2<double> UvMatching::measure_on_side(size_t k, double s, double place) const {
+    const Vec2<double> at =
+        blend(place_.corners, find_place_on_side(k, place).x, find_place_on_side(k, place).y);
+    const Vec2<double> here = find_place_on_side(k, s), wanted = interpolate(here.x, here.y);
+    const Vec3d uv = uv_face_.evaluate_position(place_.part, at.x, at.y);
+    return {std::fabs(wanted.x - uv.x), std::fabs(wanted.y - uv.y)};
 }
 
 UvMatching::Match UvMatching::match(double x, double y) const {

@@ -30,6 +30,9 @@ class UvMatching {
     /// The same on side k at s of its length, without leaving the side: only along it the uv is matched.
     Match match_on_side(size_t k, double s) const;
 
+    /// How far the uv at point `place` of side k is from the one that the patch has at point s of it.
+    Vec2<double> measure_on_side(size_t k, double s, double place) const;
+
   private:
     Match evaluate(const Vec2<double>& at, const Vec2<double>& wanted) const;
 
@@ -40,5 +43,7 @@ class UvMatching {
 
 /// Point s of side k of the unit square.
 Vec2<double> find_place_on_side(size_t k, double s);
+/// The point of side k beside a place, as s.
+double find_place_along_side(size_t k, const Vec2<double>& place);
 
 } // namespace relief
