@@ -10,16 +10,17 @@
 
 namespace relief {
 
-/// Refers to the scene. Different meshes may be asked for by several threads at once.
+/// Refers to the meshes. Several threads may ask for different meshes at once.
 class MeshLimits {
   public:
-    explicit MeshLimits(const Scene& scene);
+    explicit MeshLimits(const std::vector<Mesh>& meshes);
     ~MeshLimits();
 
     /// Makes the outlines of these meshes where they are not there yet, of several meshes at once. Throws as
     /// make_surface() where subdivision fails.
     void make_outlines(std::span<const uint32_t> meshes);
     const UvOutlines& outlines(uint32_t mesh) const { return *entries_[mesh].outlines; }
+    void release_outlines();
 
     /// The limit surface of a mesh whose levels are automatic, without further uv sets; null if the mesh has
     /// another one, or if nothing but one surface needs it.
@@ -33,8 +34,9 @@ class MeshLimits {
         std::unique_ptr<const SubdivisionMesh> limit;
         std::unique_ptr<const UvOutlines> outlines;
     };
-    const Scene& scene_;
+    const std::vector<Mesh>& meshes_;
     std::vector<Entry> entries_;
+    uint64_t kept_faces_ = 0; ///< of meshes whose limits are kept
 };
 
 } // namespace relief

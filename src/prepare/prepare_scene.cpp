@@ -124,10 +124,10 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
     for (size_t k = 0; k < same.meshes.size(); ++k)
         if (same.meshes[k]) parts.taken_off[k] = before->taken_off[same.old_meshes[k]];
     parts.surfaces = list.numbers, parts.has_old_numbers = same.has_old_numbers();
-    MeshLimits limits(scene);
+    MeshLimits limits(scene.meshes);
     prepare_maps(scene, same, before, limits, parts.prepared);
-    std::vector<SurfaceChange> changes =
-        make_surfaces(scene, list, same, before, polygons, limits, parts);
+    limits.release_outlines();
+    std::vector<SurfaceChange> changes = make_surfaces(scene, list, same, before, polygons, limits, parts);
     if (polygons == Polygonal::keep_for_views) keep_conventions(scene, parts);
     parts.made_surfaces = (before ? before->made_surfaces : 0) +
                           uint64_t(std::ranges::count_if(changes, &SurfaceChange::is_replaced));

@@ -1,6 +1,7 @@
 #include "prepare/scene_surfaces.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -78,20 +79,27 @@ SurfaceContext make_context(const SurfaceRecipe& recipe, PyramidCache& pyramids,
     return {recipe.object_from_world, &pyramids, recipe.uv_sets, recipe.tolerance, limit};
 }
 
+/// The limit surface of the mesh for a surface that has to be made: one that is there, or that several
+/// surfaces share.
+const SubdivisionMesh* find_limit(const SurfaceRecipe& recipe, bool is_only, MeshLimits& limits) {
+    if (!recipe.uv_sets.empty()) return nullptr;
+    return is_only ? limits.find(recipe.mesh) : limits.find_or_make(recipe.mesh);
+}
+
 /// Makes the surfaces of one scene, of several meshes at once.
 class SurfaceMaker {
   public:
     SurfaceMaker(const Scene& scene, const SameParts& same, SceneParts* before, const LevelFieldConfig& view,
-                 std::vector<SurfaceRecipe>& recipes)
-        : scene_(scene), same_(same), before_(before), view_(view), recipes_(recipes) {
+                 MeshLimits& limits, std::vector<SurfaceRecipe>& recipes)
+        : scene_(scene), same_(same), before_(before), view_(view), limits_(limits), recipes_(recipes) {
         if (!before) return;
         for (const Surface& surface : before->prepared.scene->surfaces)
             for (const DisplacementMap::Tile& tile : surface.map.tiles)
                 pyramids_.keep(tile.texture, tile.pyramid);
     }
 
-    /// `limit` may be null.
-    Surface make(const SurfaceKey& key, const SubdivisionMesh* limit, SurfaceChange& change) {
+    /// `is_only`: no other surface is made of the mesh.
+    Surface make(const SurfaceKey& key, bool is_only, SurfaceChange& change) {
         SurfaceRecipe& recipe = recipes_[change.surface];
         const Displacement* displacement =
             recipe.displacement == kNoIndex ? nullptr : &scene_.displacements[recipe.displacement];
@@ -100,7 +108,7 @@ class SurfaceMaker {
         if (!kept) {
             change.is_replaced = true;
             return make_surface(scene_.meshes[recipe.mesh], displacement,
-                                make_context(recipe, pyramids_, limit));
+                                make_context(recipe, pyramids_, find_limit(recipe, is_only, limits_)));
         }
         kept->corner_tangents.clear();
         if (displacement) change_map(*displacement, recipe.object_from_world, *kept, change);
@@ -152,6 +160,7 @@ class SurfaceMaker {
     const SameParts& same_;
     SceneParts* before_;
     const LevelFieldConfig& view_;
+    MeshLimits& limits_;
     std::vector<SurfaceRecipe>& recipes_;
     PyramidCache pyramids_;
 };
@@ -174,10 +183,12 @@ std::vector<SurfaceRecipe> make_recipes(const Scene& scene, const SurfaceList& l
 }
 
 /// With the map of the surface before, which may have been edited.
-Surface remake_surface(const SceneParts& parts, const SurfaceRecipe& recipe, const Surface& before) {
+Surface remake_surface(const SceneParts& parts, const SurfaceRecipe& recipe, const SubdivisionMesh* limit,
+                       const Surface& before) {
     const Mesh& mesh = parts.meshes[recipe.mesh];
     PyramidCache pyramids;
-    if (recipe.displacement == kNoIndex) return make_surface(mesh, nullptr, make_context(recipe, pyramids));
+    if (recipe.displacement == kNoIndex)
+        return make_surface(mesh, nullptr, make_context(recipe, pyramids, limit));
     Displacement displacement = parts.displacements[recipe.displacement];
     // The images of the surface before are coefficients already.
     if (is_smooth(displacement.filter))
@@ -186,7 +197,7 @@ Surface remake_surface(const SceneParts& parts, const SurfaceRecipe& recipe, con
         displacement.tiles[k].texture = before.map.tiles[k].texture;
         pyramids.keep(before.map.tiles[k].texture, before.map.tiles[k].pyramid);
     }
-    Surface surface = make_surface(mesh, &displacement, make_context(recipe, pyramids));
+    Surface surface = make_surface(mesh, &displacement, make_context(recipe, pyramids, limit));
     for (size_t k = 0; k < before.map.tiles.size(); ++k) surface.map.tiles[k].mips = before.map.tiles[k].mips;
     return surface;
 }
@@ -221,7 +232,7 @@ std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, 
     std::vector<SurfaceChange> changes(list.numbers.size());
     surfaces.resize(list.numbers.size());
     parts.recipes = make_recipes(scene, list, parts.taken_off);
-    SurfaceMaker maker(scene, same, before, parts.prepared.scene->levels, parts.recipes);
+    SurfaceMaker maker(scene, same, before, parts.prepared.scene->levels, limits, parts.recipes);
     std::vector<uint64_t> face_counts;
     for (const Mesh& mesh : scene.meshes) face_counts.push_back(mesh.face_sizes.size());
     ProgressCounter progress(find_progress(),
@@ -232,8 +243,7 @@ std::vector<SurfaceChange> make_surfaces(Scene& scene, const SurfaceList& list, 
             for (const SurfaceKey& key : keys) {
                 const uint32_t surface = list.numbers.at(key);
                 changes[surface].surface = surface;
-                surfaces[surface] = maker.make(
-                    key, keys.size() > 1 ? limits.find_or_make(mesh) : limits.find(mesh), changes[surface]);
+                surfaces[surface] = maker.make(key, keys.size() == 1, changes[surface]);
             }
             limits.release(uint32_t(mesh));
             const bool is_kept = polygons == Polygonal::keep || (polygons == Polygonal::keep_for_views &&
@@ -258,10 +268,20 @@ std::vector<uint32_t> follow_view(SceneParts& parts, const LevelFieldConfig& con
         recipe.tolerance = std::move(tolerance);
         numbers.push_back(k), recipes.push_back(std::move(recipe));
     }
+    std::map<uint32_t, std::vector<size_t>> of_mesh;
+    for (size_t k = 0; k < recipes.size(); ++k) of_mesh[recipes[k].mesh].push_back(k);
+    const std::vector<std::pair<uint32_t, std::vector<size_t>>> meshes(of_mesh.begin(), of_mesh.end());
+    MeshLimits limits(parts.meshes);
     std::vector<Surface> made(numbers.size());
-    parallel_for("surfaces of another view", numbers.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t k = begin; k < end; ++k)
-            made[k] = remake_surface(parts, recipes[k], surfaces[numbers[k]]);
+    parallel_for("surfaces of another view", meshes.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t mesh = begin; mesh < end; ++mesh) {
+            const std::vector<size_t>& places = meshes[mesh].second;
+            for (const size_t k : places)
+                made[k] =
+                    remake_surface(parts, recipes[k], find_limit(recipes[k], places.size() == 1, limits),
+                                   surfaces[numbers[k]]);
+            limits.release(meshes[mesh].first);
+        }
     });
     // All at the end, so that an error changes nothing.
     for (size_t k = 0; k < numbers.size(); ++k) {

@@ -150,7 +150,7 @@ TEST(Gutter, of_a_tile_counts_the_faces_of_that_tile) {
     for (const GutterFill::Copy& copy : second.copies) EXPECT_GT(copy.from_x, kSize / 2);
 }
 
-/// Quads in random order that share their sides, but for faces that are left out. The middle is at 0, where
+/// Quads in random order that share their sides; some faces are left out. The middle is at 0, where
 /// some faces have -0.
 UvOutlines make_outlines_with_holes() {
     constexpr int kCount = 12;

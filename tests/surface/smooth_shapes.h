@@ -1,6 +1,8 @@
 // Meshes for tests of subdivision: irregular points, polygons, boundaries, creases.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <ostream>
@@ -17,12 +19,13 @@ enum class Shape {
     creased_cube,
     semi_sharp_cube,
     sharp_corner_grid,
-    tangled_cube,    ///< semi-sharp creases that end, turn and change, and a semi-sharp point
-    crossed_grid,    ///< semi-sharp creases that cross, end and meet the boundary
-    creased_pyramid, ///< semi-sharp creases along triangles
-    changing_grid,   ///< a semi-sharp crease that goes on straight with another sharpness
-    pole,            ///< nine quads around a point
-    sharp_point_grid ///< a semi-sharp point that takes longer to wear off than other points have rings
+    tangled_cube,     ///< semi-sharp creases that end, turn and change, and a semi-sharp point
+    crossed_grid,     ///< semi-sharp creases that cross, end and meet the boundary
+    creased_pyramid,  ///< semi-sharp creases along triangles
+    changing_grid,    ///< a semi-sharp crease that goes on straight with another sharpness
+    pole,             ///< nine quads around a point
+    sharp_point_grid, ///< a semi-sharp point that takes longer to wear off than other points have rings
+    fine_cube         ///< extraordinary points, a triangle and a pentagon among many regular quads
 };
 
 inline constexpr Shape kAllShapes[] = {Shape::cube,
@@ -67,9 +70,55 @@ inline Mesh make_pole(uint32_t quad_count) {
     return mesh;
 }
 
+/// A closed cube with extraordinary points at its corners: 5 x 5 quads per side, in two of which a quad is
+/// cut into triangles or joined with a half of the next one to a pentagon. Each side is an island of curved
+/// uvs.
+inline Mesh make_fine_cube() {
+    constexpr int kSide = 5;
+    Mesh mesh;
+    mesh.name = "fine cube";
+    using Place = std::array<int, 2>;
+    const auto add = [&](int side, const std::vector<Place>& places) {
+        std::vector<uint32_t> points;
+        std::vector<Vec2f> uvs;
+        for (const auto& [x, y] : places) {
+            const float a = 2.0f * float(x) / kSide - 1, b = 2.0f * float(y) / kSide - 1;
+            const Vec3f at[] = {{a, b, 1}, {b, a, -1}, {1, a, b}, {-1, b, a}, {b, 1, a}, {a, -1, b}};
+            const Vec3f& p = at[side];
+            // Bent, so that no side is flat or symmetric.
+            const Vec3f bent{p.x + 0.15f * std::sin(2 * p.y), p.y + 0.1f * std::sin(3 * p.z),
+                             p.z + 0.15f * std::sin(2 * p.x + p.y)};
+            const auto known = std::find(mesh.positions.begin(), mesh.positions.end(), bent);
+            points.push_back(uint32_t(known - mesh.positions.begin()));
+            if (known == mesh.positions.end()) mesh.positions.push_back(bent);
+            uvs.push_back(
+                {float(side) + 0.4f + 0.3f * a + 0.05f * b * b, 0.5f + 0.35f * b + 0.04f * std::sin(3 * a)});
+        }
+        add_face(mesh, points, uvs);
+    };
+    for (int side = 0; side < 6; ++side)
+        for (int j = 0; j < kSide; ++j)
+            for (int i = 0; i < kSide; ++i) {
+                const Place p{i, j}, q{i + 1, j}, r{i + 1, j + 1}, s{i, j + 1};
+                if (side == 0 && i == 2 && j == 2)
+                    add(side, {p, q, r}), add(side, {p, r, s});
+                else if (side == 1 && i == 1 && j == 2)
+                    add(side, {p, q, {i + 2, j + 1}, r, s});
+                else if (side == 1 && i == 2 && j == 2)
+                    add(side, {p, q, r});
+                else
+                    add(side, {p, q, r, s});
+            }
+    mesh.subdivision.scheme = SubdivisionScheme::catmark;
+    return mesh;
+}
+
 inline Mesh make_shape(Shape shape) {
     Mesh mesh;
     switch (shape) {
+    case Shape::fine_cube:
+        mesh = make_fine_cube();
+        break;
     case Shape::pyramid:
     case Shape::creased_pyramid:
         mesh = make_pyramid();

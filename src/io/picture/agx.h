@@ -8,7 +8,7 @@
 
 namespace relief {
 
-/// Into [0, 1], still linear. Components are finite and not negative.
+/// Maps finite components that are not negative into [0, 1], where they are still linear.
 Vec3f tone_map_agx(const Vec3f& linear);
 
 /// The curve of AgX, and the one from its values to sRGB, with linear interpolation between entries.

@@ -83,7 +83,7 @@ void set_header(PngStream& stream, int width, int height, const PngKind& kind) {
     png_set_compression_buffer_size(png, kChunkBytes);
 }
 
-/// For pictures: up to five times as fast as the defaults of libpng; renders became 1 % to 12 % larger.
+/// Codes pictures up to five times as fast as the defaults of libpng do; renders became 1 % to 12 % larger.
 /// The defaults try five filters per row and search long for repetitions, which noise does not have.
 void set_quick_coding(PngStream& stream) {
     constexpr int kLevel = 3; // the last one of zlib that takes the first repetition that it finds

@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 #include <utility>
 
 #include "surface/map/displacement_map.h"
-#include "surface/map/texel_range.h"
 #include "surface/map/texels.h"
+#include "surface/map/wrapped_range.h"
 
 namespace relief {
 
 namespace {
 
 constexpr uint32_t kStepBlock = 8; // texels per side
-constexpr int64_t kMostSteps =
-    1024; // texels of a footprint whose own steps are measured, not those of blocks
+/// Texels of a footprint whose own steps are measured, not those of blocks.
+constexpr int64_t kMostSteps = 1024;
 
 /// The displacement by a texel, apart from what is the same for all texels.
 std::array<float, 3> find_vector(const DisplacementMap& map, const Texture& texture, uint32_t x, uint32_t y) {
@@ -114,43 +113,21 @@ double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Ve
     // Beyond a border the map goes on with other values.
     if (columns.count != 1 || rows.count != 1 || columns.is_outside_read || rows.is_outside_read)
         return 2 * longest_ * std::min(1.0, texels);
-    const double by_blocks = double(find_step_by_blocks(tile.index, columns, rows)) * texels;
-    if (by_blocks <= enough) return std::min(2 * longest_, by_blocks);
-    return std::min(2 * longest_, double(find_largest_step(tile.index, columns, rows)) * texels);
+    const auto [x0, x1] = columns.parts[0];
+    const auto [y0, y1] = rows.parts[0];
+    const TexelRectangle read{uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)};
+    const double by_blocks = double(find_step_by_blocks(tile.index, read)) * texels;
+    if (by_blocks <= enough || (x1 - x0 + 1) * (y1 - y0 + 1) > kMostSteps)
+        return std::min(2 * longest_, by_blocks);
+    return std::min(2 * longest_, double(measure_steps(map_, texture, read)) * texels);
 }
 
-/// No less than find_largest_step().
-float DisplacementChange::find_step_by_blocks(size_t tile, const WrappedRange& columns,
-                                              const WrappedRange& rows) const {
+/// No less than the largest step between neighbours in a rectangle.
+float DisplacementChange::find_step_by_blocks(size_t tile, const TexelRectangle& texels) const {
     float step = 0;
-    for (int j = 0; j < rows.count; ++j)
-        for (int i = 0; i < columns.count; ++i) {
-            const auto [x0, x1] = columns.parts[size_t(i)];
-            const auto [y0, y1] = rows.parts[size_t(j)];
-            for (int64_t y = y0 / kStepBlock; y <= y1 / kStepBlock; ++y)
-                for (int64_t x = x0 / kStepBlock; x <= x1 / kStepBlock; ++x)
-                    step = std::max(step, find_step(tile, uint32_t(x), uint32_t(y)));
-        }
-    return step;
-}
-
-float DisplacementChange::find_largest_step(size_t tile, const WrappedRange& columns,
-                                            const WrappedRange& rows) const {
-    const auto count = [](const WrappedRange& range) {
-        int64_t sum = 0;
-        for (int k = 0; k < range.count; ++k)
-            sum += range.parts[size_t(k)][1] - range.parts[size_t(k)][0] + 1;
-        return sum;
-    };
-    if (count(columns) * count(rows) > kMostSteps) return find_step_by_blocks(tile, columns, rows);
-    float step = 0;
-    for (int j = 0; j < rows.count; ++j)
-        for (int i = 0; i < columns.count; ++i) {
-            const auto [x0, x1] = columns.parts[size_t(i)];
-            const auto [y0, y1] = rows.parts[size_t(j)];
-            step = std::max(step, measure_steps(map_, *map_.tiles[tile].texture,
-                                                {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)}));
-        }
+    for (uint32_t y = texels.y0 / kStepBlock; y <= texels.y1 / kStepBlock; ++y)
+        for (uint32_t x = texels.x0 / kStepBlock; x <= texels.x1 / kStepBlock; ++x)
+            step = std::max(step, find_step(tile, x, y));
     return step;
 }
 

@@ -3,11 +3,10 @@
 
 #include <array>
 #include <atomic>
-#include <memory>
 #include <vector>
 
 #include "math/vec.h"
-#include "surface/map/wrapped_range.h"
+#include "surface/map/texel_range.h"
 #include "surface/patch/surface.h"
 
 namespace relief {
@@ -47,8 +46,7 @@ class DisplacementChange {
         std::vector<std::atomic<float>> steps; ///< largest step to a neighbour; negative: not known yet
     };
     float find_step(size_t tile, uint32_t x, uint32_t y) const;
-    float find_step_by_blocks(size_t tile, const WrappedRange& columns, const WrappedRange& rows) const;
-    float find_largest_step(size_t tile, const WrappedRange& columns, const WrappedRange& rows) const;
+    float find_step_by_blocks(size_t tile, const TexelRectangle& texels) const;
 
     const DisplacementMap& map_;
     bool is_udim_;

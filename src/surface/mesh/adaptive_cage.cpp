@@ -16,7 +16,7 @@ namespace relief {
 
 namespace {
 
-constexpr int kMostRounds = 8;
+constexpr int kMostRounds = 10;
 /// From this share of the quads of a connected part of the mesh on, all are cut.
 constexpr double kManyQuads = 0.3;
 constexpr double kMostSpare = 40;
@@ -117,8 +117,8 @@ class AdaptiveCage {
             has_polygons = has_polygons || source_.face_size(face) != 4;
         if (has_polygons) split(std::vector<uint8_t>(source_.is_sharp.size()));
         find_parts();
-        for (int round = 0; round < kMostRounds; ++round) {
-            std::vector<uint8_t> is_split = choose_splits();
+        for (int round = 0; round <= kMostRounds; ++round) {
+            std::vector<uint8_t> is_split = choose_splits(round == kMostRounds);
             if (is_split.empty()) break;
             is_cut_ = true;
             split(std::move(is_split));
@@ -144,21 +144,21 @@ class AdaptiveCage {
             });
     }
 
-    /// One byte per edge; empty: all quads are near enough.
-    std::vector<uint8_t> choose_splits() {
+    /// One byte per edge; empty: all quads are near enough, or `is_last` and nothing is split.
+    std::vector<uint8_t> choose_splits(bool is_last) {
         const RefinedMesh refined = make_refined(cage_);
         const std::vector<uint32_t> runs = find_face_runs(refined);
-        std::vector<uint8_t> is_seam(cage_.is_sharp.size());
-        if (needs_.patches == BasePatches::bicubic) {
-            is_seam = find_seams(refined);
-            fit_new_sides(refined, runs, is_seam);
-        }
+        if (needs_.patches == BasePatches::bicubic) fit_new_sides(refined, runs);
         std::vector<Judgement> judgements(cage_.face_count());
         visit_open_quads(refined, runs, [&](uint32_t quad, LimitSurfaces& limits) {
-            judgements[quad] = judge_.judge(refined, quad, list_sides(refined, quad, is_seam), limits);
+            judgements[quad] = judge_.judge(refined, quad, list_sides(refined, quad), limits);
         });
         std::vector<uint8_t> is_split(cage_.is_sharp.size()), has_spokes(cage_.point_count);
-        widen_splits(judgements);
+        if (is_last)
+            for (Judgement& judgement : judgements)
+                judgement.splits_u = judgement.splits_v = judgement.splits_fit = false;
+        else
+            widen_splits(judgements);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad)
             if (!cage_.is_accurate[quad]) mark_splits(quad, judgements[quad], is_split, has_spokes);
         for (uint32_t quad = 0; quad < cage_.face_count(); ++quad)
@@ -199,19 +199,27 @@ class AdaptiveCage {
         return is_seam;
     }
 
-    /// Fits the edges that have no curve yet, each by its lowest quad: quads at them are not accurate yet.
-    void fit_new_sides(const RefinedMesh& refined, const std::vector<uint32_t>& runs,
-                       const std::vector<uint8_t>& is_seam) {
+    /// Fits the edges that have no curve yet and need one, each by the lowest quad that needs it. A quad that
+    /// is known to be accurate and has no curve there is exact, and so is the curve that the other one finds.
+    void fit_new_sides(const RefinedMesh& refined, const std::vector<uint32_t>& runs) {
+        std::vector<uint8_t> needs_fit(cage_.face_count());
+        visit_open_quads(refined, runs, [&](uint32_t quad, LimitSurfaces& limits) {
+            needs_fit[quad] = judge_.needs_fit(refined, quad, limits);
+        });
         const auto first_new = uint32_t(side_fits_.size());
-        uint32_t count = first_new;
-        for (uint32_t& fit : cage_.side_fits)
-            if (fit == kNoIndex) fit = count++;
-        side_fits_.resize(count);
+        std::vector<uint32_t> fitters; // per new curve
+        for (uint32_t quad = 0; quad < refined.quad_count(); ++quad)
+            for (size_t k = 0; k < 4 && needs_fit[quad]; ++k)
+                if (uint32_t& fit = cage_.side_fits[refined.edges[quad][k]]; fit == kNoIndex)
+                    fit = first_new + uint32_t(fitters.size()), fitters.push_back(quad);
+        if (fitters.empty()) return;
+        side_fits_.resize(first_new + fitters.size());
+        const std::vector<uint8_t> is_seam = find_seams(refined);
         visit_open_quads(refined, runs, [&](uint32_t quad, LimitSurfaces& limits) {
             std::array<bool, 4> is_wanted{}, is_own_seam{};
             for (size_t k = 0; k < 4; ++k) {
-                const uint32_t edge = refined.edges[quad][k];
-                is_wanted[k] = refined.first_quads[edge] == quad && cage_.side_fits[edge] >= first_new;
+                const uint32_t edge = refined.edges[quad][k], fit = cage_.side_fits[edge];
+                is_wanted[k] = fit != kNoIndex && fit >= first_new && fitters[fit - first_new] == quad;
                 is_own_seam[k] = is_seam[edge] != 0;
             }
             if (is_wanted == std::array<bool, 4>{}) return;
@@ -222,14 +230,11 @@ class AdaptiveCage {
         });
     }
 
-    std::array<JudgedSide, 4> list_sides(const RefinedMesh& refined, uint32_t quad,
-                                         const std::vector<uint8_t>& is_seam) const {
-        std::array<JudgedSide, 4> sides;
-        if (side_fits_.empty()) return sides;
+    SideFits list_sides(const RefinedMesh& refined, uint32_t quad) const {
+        SideFits sides{};
         for (size_t k = 0; k < 4; ++k) {
-            const uint32_t edge = refined.edges[quad][k];
-            sides[k] = {&side_fits_[cage_.side_fits[edge]],
-                        is_seam[edge] != 0 && refined.first_quads[edge] != quad};
+            const uint32_t fit = cage_.side_fits[refined.edges[quad][k]];
+            if (fit != kNoIndex) sides[k] = &side_fits_[fit];
         }
         return sides;
     }
@@ -295,6 +300,7 @@ class AdaptiveCage {
             if (cage_.semi_sharpness[edges[k]] > 0) mark(k + 1), mark(k + 3), has_reason = true;
             if (!cage_.is_regular[points[k]] && !cage_.is_straight[points[k]])
                 has_spokes[points[k]] = 1, has_reason = true;
+            if (reasons.splits_side[k]) mark(k), mark(k + 2), has_reason = true;
         }
         for (size_t k = 0; k < 4 && !has_reason; ++k) mark(k);
     }

@@ -7,14 +7,12 @@ namespace relief {
 
 namespace {
 
-using Places = std::array<double, kFitCount>;
-
 /// Fits end when no place moves by more.
 constexpr double kSmallestMove = 1e-4;
 
 /// Parameters in proportion to the length of the way from target to target.
-Places measure_way(const Curve& curve, const std::array<Vec3d, kFitCount>& targets) {
-    Places place;
+CurvePlaces measure_way(const Curve& curve, const std::array<Vec3d, kFitCount>& targets) {
+    CurvePlaces place;
     double way = 0;
     for (size_t k = 0; k < targets.size(); ++k)
         place[k] = way += compute_length(targets[k] - (k == 0 ? curve[0] : targets[k - 1]));
@@ -28,7 +26,7 @@ struct Projection {
 };
 
 /// Moves each place by a Newton step towards the foot of its target on the curve.
-Projection project(const Curve& curve, const std::array<Vec3d, kFitCount>& targets, Places& place) {
+Projection project(const Curve& curve, const std::array<Vec3d, kFitCount>& targets, CurvePlaces& place) {
     Projection projection;
     for (size_t k = 0; k < targets.size(); ++k) {
         const CubicWeights w(place[k]);
@@ -48,7 +46,7 @@ Projection project(const Curve& curve, const std::array<Vec3d, kFitCount>& targe
     return projection;
 }
 
-void solve(Curve& curve, const std::array<Vec3d, kFitCount>& targets, const Places& place) {
+void solve(Curve& curve, const std::array<Vec3d, kFitCount>& targets, const CurvePlaces& place) {
     PointFit fit(2);
     for (size_t k = 0; k < targets.size(); ++k) {
         const std::array<double, 4> w = CubicWeights(place[k]).value;
@@ -84,26 +82,30 @@ std::array<Vec3d, 4> PointFit::solve() {
     return x;
 }
 
-double fit_curve(Curve& curve, const std::array<Vec3d, kFitCount>& targets, bool has_start,
-                 double tolerance) {
+CurvePlaces fit_curve(Curve& curve, const std::array<Vec3d, kFitCount>& targets, bool has_start,
+                      double tolerance) {
+    CurvePlaces even;
+    for (int k = 0; k < kFitCount; ++k) even[size_t(k)] = place_of_fit(k);
     if (has_start) {
-        Places place;
-        for (int k = 0; k < kFitCount; ++k) place[size_t(k)] = place_of_fit(k);
-        const double distance = project(curve, targets, place).distance;
-        if (distance <= tolerance) return distance;
+        CurvePlaces place = even;
+        if (project(curve, targets, place).distance <= tolerance) return place;
     }
     if (curve[0] == curve[3] && std::ranges::all_of(targets, [&](const Vec3d& p) { return p == curve[0]; })) {
         curve[1] = curve[2] = curve[0];
-        return 0;
+        return even;
     }
-    Places place = measure_way(curve, targets);
+    CurvePlaces place = measure_way(curve, targets);
     Projection projection;
     for (int pass = 0; pass < kFitPasses; ++pass) {
         solve(curve, targets, place);
         projection = project(curve, targets, place);
         if (projection.distance <= tolerance || projection.move < kSmallestMove) break;
     }
-    return projection.distance;
+    return place;
+}
+
+double project_on_curve(const Curve& curve, const std::array<Vec3d, kFitCount>& targets, CurvePlaces& place) {
+    return project(curve, targets, place).distance;
 }
 
 } // namespace relief

@@ -43,9 +43,16 @@ class PointFit {
 
 using Curve = std::array<Vec3d, 4>; ///< control points of a cubic
 
+using CurvePlaces = std::array<double, kFitCount>; ///< parameters of targets on a curve
+
 /// Moves the inner control points so that the curve passes the targets, in order, at any parameters. With
 /// `has_start` the curve is kept if it lies within `tolerance` of the targets; fits stop there, too. Returns
-/// the largest distance that is left.
-double fit_curve(Curve& curve, const std::array<Vec3d, kFitCount>& targets, bool has_start, double tolerance);
+/// the parameters.
+CurvePlaces fit_curve(Curve& curve, const std::array<Vec3d, kFitCount>& targets, bool has_start,
+                      double tolerance);
+
+/// Returns the largest distance of the targets from the curve. Moves each parameter by a Newton step towards
+/// the foot of its target.
+double project_on_curve(const Curve& curve, const std::array<Vec3d, kFitCount>& targets, CurvePlaces& place);
 
 } // namespace relief

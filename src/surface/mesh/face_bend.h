@@ -10,8 +10,7 @@
 namespace relief {
 
 /// Largest distances from the values interpolated between the ends of lines across a whole face, or part of a
-/// polygon. Where the face is smooth, a line that crosses a fraction s of it
-/// is s^2 as far away.
+/// polygon. Where the face is smooth, a line that crosses a fraction s of it is s^2 as far away.
 struct FaceBend {
     std::array<double, 2> position{}; ///< off the surface, or off sharp edges, along u and along v
     std::array<double, 2> normal{},

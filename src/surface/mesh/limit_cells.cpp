@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace relief {
 
@@ -46,13 +47,6 @@ PointFan subdivide_fan(const PointFan& fan) {
     return next;
 }
 
-/// Halstead, Kass and DeRose 1993.
-Vec3d find_limit(const PointFan& fan) {
-    const auto n = double(fan.count);
-    return (fan.point * n + find_mean(fan.edges, fan.count) * 4.0 + find_mean(fan.faces, fan.count)) *
-           (1 / (n + 5));
-}
-
 /// Controls of the cell whose first corner is at (i + 1, j + 1).
 template <class Grid> SplineControls take_cell(const Grid& grid, size_t i, size_t j) {
     SplineControls controls;
@@ -62,6 +56,29 @@ template <class Grid> SplineControls take_cell(const Grid& grid, size_t i, size_
 }
 
 } // namespace
+
+/// Position and tangents along the axes, whose lengths are those of derivatives at regular points (Halstead,
+/// Kass and DeRose 1993).
+LimitSample LimitCells::find_limit(const PointFan& fan) {
+    const auto n = double(fan.count);
+    const double turn = 2 * std::numbers::pi / n;
+    const double weight = 1 + std::cos(turn) + std::cos(turn / 2) * std::sqrt(2 * (9 + std::cos(turn)));
+    const auto find_tangent = [&](size_t first) {
+        Vec3d sum{};
+        for (size_t k = 0; k < fan.count; ++k) {
+            const double at = std::cos(turn * (double(k) - double(first))),
+                         next = std::cos(turn * (double(k) + 1 - double(first)));
+            sum = sum + fan.edges[k] * (weight * at) + fan.faces[k] * (at + next);
+        }
+        return sum * (4 / (12 * n));
+    };
+    LimitSample limit;
+    limit.position =
+        (fan.point * n + find_mean(fan.edges, fan.count) * 4.0 + find_mean(fan.faces, fan.count)) *
+        (1 / (n + 5));
+    limit.du = find_tangent(0), limit.dv = find_tangent(1);
+    return limit;
+}
 
 std::array<PointFan, 4> find_fans_of_part(const std::vector<PointFan>& corners, size_t part) {
     const size_t size = corners.size();
@@ -106,7 +123,9 @@ LimitCells::LimitCells(const std::array<PointFan, 4>& corners) {
         cells_[k] = take_cell(grid, size_t(kCorner[k][0] / 2), size_t(kCorner[k][1] / 2));
         if (corners[k].count == 4) continue;
         places_[k] = uint8_t(irregular_.size());
-        Ring& ring = irregular_.emplace_back().ring;
+        Corner& corner = irregular_.emplace_back();
+        corner.limit = find_limit(corners[k]);
+        Ring& ring = corner.ring;
         ring.fan = corners[k];
         for (int x = 0; x < 4; ++x)
             for (int y = 0; y < 4; ++y)
@@ -125,7 +144,7 @@ LimitCells::Level LimitCells::subdivide(Ring& ring) {
             subdivide_line({columns[0][y], columns[1][y], columns[2][y], columns[3][y]});
         for (size_t x = 0; x < 5; ++x) grid[x][y] = row[x];
     }
-    // What the point that has no meaning has reached.
+    // These depend on the point that has no meaning.
     grid[1][1] = ring.fan.point, grid[1][0] = ring.fan.edges[ring.fan.count - 1];
     grid[0][1] = ring.fan.edges[2];
     ring.around = take_cell(grid, 0, 0);
@@ -141,8 +160,8 @@ LimitCells::Cell LimitCells::find_cell(double u, double v) const {
     double x = 2 * (k == 0 ? u : k == 1 ? v : k == 2 ? 1 - u : 1 - v);
     double y = 2 * (k == 0 ? v : k == 1 ? 1 - u : k == 2 ? 1 - v : u);
     Corner& corner = irregular_[places_[k]];
-    const bool is_at_corner = x == 0 && y == 0;
     double scale = 2;
+    if (x == 0 && y == 0) return {nullptr, 0, 0, scale, k, &corner};
     for (size_t level = 0;; ++level) {
         if (level == corner.levels.size()) corner.levels.push_back(subdivide(corner.ring));
         x *= 2, y *= 2, scale *= 2;
@@ -151,16 +170,32 @@ LimitCells::Cell LimitCells::find_cell(double u, double v) const {
             const size_t cell = x < 1 ? 2 : y < 1 ? 0 : 1;
             return {&here[cell], x < 1 ? x : x - 1, y < 1 ? y : y - 1, scale, k};
         }
-        if (is_at_corner || level + 1 == kMostLevels)
-            return {&here[1], 0, 0, scale, k, std::max(x, y), &corner.ring};
+        if (level + 1 == kMostLevels) return {nullptr, x, y, scale, k, &corner};
     }
+}
+
+/// Interpolates between the corner and the cells around; at the corner the derivatives are its tangents.
+LimitSample LimitCells::evaluate_innermost(const Cell& cell) {
+    const Corner& corner = *cell.corner;
+    if (cell.x == 0 && cell.y == 0) return corner.limit;
+    const Level& around = corner.levels.back();
+    const Vec3d& here = corner.limit.position;
+    const Vec3d right = evaluate_spline_position(around[0], 0, 0),
+                across = evaluate_spline_position(around[1], 0, 0),
+                above = evaluate_spline_position(around[2], 0, 0);
+    const double x = cell.x, y = cell.y;
+    LimitSample sample;
+    sample.position = (here * (1 - x) + right * x) * (1 - y) + (above * (1 - x) + across * x) * y;
+    sample.du = (right - here) * (1 - y) + (across - above) * y;
+    sample.dv = (above - here) * (1 - x) + (across - right) * x;
+    sample.duv = here - right + across - above;
+    return sample;
 }
 
 LimitSample LimitCells::evaluate(double u, double v, bool has_twist) const {
     const Cell cell = find_cell(u, v);
-    LimitSample sample = evaluate_spline(*cell.controls, cell.x, cell.y, has_twist);
-    if (cell.ring)
-        sample.position = sample.position * cell.part + find_limit(cell.ring->fan) * (1 - cell.part);
+    LimitSample sample =
+        cell.controls ? evaluate_spline(*cell.controls, cell.x, cell.y, has_twist) : evaluate_innermost(cell);
     const Vec3d dx = sample.du * cell.scale, dy = sample.dv * cell.scale;
     sample.duv = sample.duv * (cell.scale * cell.scale * (cell.turn % 2 == 0 ? 1 : -1));
     switch (cell.turn) {
@@ -181,8 +216,8 @@ LimitSample LimitCells::evaluate(double u, double v, bool has_twist) const {
 
 Vec3d LimitCells::evaluate_position(double u, double v) const {
     const Cell cell = find_cell(u, v);
-    const Vec3d position = evaluate_spline_position(*cell.controls, cell.x, cell.y);
-    return cell.ring ? position * cell.part + find_limit(cell.ring->fan) * (1 - cell.part) : position;
+    return cell.controls ? evaluate_spline_position(*cell.controls, cell.x, cell.y)
+                         : evaluate_innermost(cell).position;
 }
 
 } // namespace relief

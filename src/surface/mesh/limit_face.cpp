@@ -26,7 +26,6 @@ bool LimitFace::is_bicubic_within(const QuadPlace& quad) const {
         low = {std::min(low.x, corner.x), std::min(low.y, corner.y)};
         high = {std::max(high.x, corner.x), std::max(high.y, corner.y)};
     }
-    const uint32_t irregular = has_cells() ? cells_of(quad.part).irregular_corners() : irregular_corners_;
     constexpr int kMostSteps = 12;
     for (int step = 1; step <= kMostSteps; ++step) {
         const double side = std::ldexp(1.0, -step);
@@ -40,7 +39,7 @@ bool LimitFace::is_bicubic_within(const QuadPlace& quad) const {
                                                : i == 0  ? 8u
                                                          : 0u)
                                             : 0u;
-        if ((irregular & corner) == 0) return true;
+        if ((irregular_corners_ & corner) == 0) return true;
     }
     return false;
 }

@@ -34,6 +34,8 @@ class LimitFace {
 
     /// Whether the whole face is one bicubic polynomial.
     bool is_bicubic() const { return surface_ == nullptr; }
+    /// Whether creases that wear off may touch the face.
+    bool has_creases() const { return !is_bicubic_apart_; }
     /// Whether the limit is known to be one bicubic polynomial in the rectangle around a quad.
     bool is_bicubic_within(const QuadPlace& quad) const;
 

@@ -102,22 +102,63 @@ Vec3d PatchFit::flatten(const Vec3d& control, size_t k) const {
     return control - normal_[k] * dot(normal_[k], control - corner_[k]);
 }
 
+namespace {
+
+/// Where on the side the curve is at parameter s: between the targets.
+double find_place_of_parameter(const CurvePlaces& places, double s) {
+    double parameter = 0, place = 0;
+    for (int k = 0; k <= kFitCount; ++k) {
+        const double next_parameter = k < kFitCount ? places[size_t(k)] : 1, next = place_of_fit(k);
+        if (s <= next_parameter && next_parameter > parameter)
+            return place + (next - place) * (s - parameter) / (next_parameter - parameter);
+        parameter = next_parameter, place = next;
+    }
+    return 1;
+}
+
+} // namespace
+
+/// Largest distance of the limit from the curve of a side, at many places near its ends: creases that wear
+/// off and meet there bend it more than the samples of a fit show.
+double PatchFit::measure_side(const Curve& curve, size_t k) const {
+    constexpr CurvePlaces kPlaces[] = {
+        {0.005, 0.015, 0.03, 0.06, 0.1}, {0.2, 0.35, 0.5, 0.65, 0.8}, {0.9, 0.94, 0.97, 0.985, 0.995}};
+    double largest = 0;
+    for (CurvePlaces places : kPlaces) {
+        std::array<Vec3d, kFitCount> targets;
+        for (size_t n = 0; n < places.size(); ++n) targets[n] = evaluate_edge(k, places[n]);
+        project_on_curve(curve, targets, places);
+        largest = std::max(largest, project_on_curve(curve, targets, places));
+    }
+    return largest;
+}
+
+SideFit PatchFit::start_side(size_t k) const {
+    SideFit side;
+    side.first_point = refined_.points[quad_][k];
+    if (!refined_.uvs.empty()) side.uvs = {refined_.uvs[quad_][k], refined_.uvs[quad_][(k + 1) % 4]};
+    return side;
+}
+
 SideFit PatchFit::fit_side(size_t k) {
     const size_t next = (k + 1) % 4;
     Curve curve = {corner_[k], corner_[k] + to_next_[k] * (1.0 / 3),
                    corner_[next] + to_previous_[next] * (1.0 / 3), corner_[next]};
-    SideFit fit;
-    fit.first_point = refined_.points[quad_][k];
+    SideFit fit = start_side(k);
     for (size_t n = 0; n < kSideSamples; ++n) fit.places[n] = place_of_side_sample(n);
     if (!has_exact_side(k)) {
         std::array<Vec3d, kFitCount> targets;
         for (int sample = 0; sample < kFitCount; ++sample)
             targets[size_t(sample)] = evaluate_edge(k, place_of_fit(sample));
         const bool has_slopes = is_regular_[k] && is_regular_[next];
-        fit.off = fit_curve(curve, targets, has_slopes && refined_.is_adaptive, negligible_);
+        CurvePlaces places = fit_curve(curve, targets, has_slopes && refined_.is_adaptive, negligible_);
         const bool is_sharp = refined_.is_sharp[refined_.edges[quad_][k]];
         if (!is_regular_[k] && !is_sharp) curve[1] = flatten(curve[1], k);
         if (!is_regular_[next] && !is_sharp) curve[2] = flatten(curve[2], next);
+        fit.off = project_on_curve(curve, targets, places);
+        if (face_.has_creases()) fit.off = std::max(fit.off, measure_side(curve, k));
+        for (size_t n = 0; n < kSideSamples; ++n)
+            fit.places[n] = find_place_of_parameter(places, place_of_side_sample(n));
     }
     fit.inner = {curve[1], curve[2]};
     return fit;
@@ -166,15 +207,20 @@ void PatchFit::fit_inside() {
         lag_ = std::max({lag_, std::fabs(sample.u - sample.x), std::fabs(sample.v - sample.y)});
 }
 
-/// Largest distance of the limit from the patch near its sides, where creases bend more than the samples
-/// show.
+/// Largest distance of the limit from the patch near its sides, where creases that wear off bend it more than
+/// the samples show.
 double PatchFit::measure_beside_sides() const {
+    constexpr double kFew[] = {0.05, 0.35, 0.65, 0.95}, kNear[] = {0.03, 0.09};
+    constexpr double kMany[] = {0.01, 0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95, 0.99},
+                     kNearCreases[] = {0.01, 0.03, 0.06, 0.09, 0.13, 0.25};
+    const std::span<const double> places = face_.has_creases() ? kMany : std::span<const double>(kFew),
+                                  parts = face_.has_creases() ? kNearCreases : std::span<const double>(kNear);
     double largest = 0;
     for (size_t k = 0; k < 4; ++k)
-        for (const double s : {0.05, 0.35, 0.65, 0.95}) {
+        for (const double s : places) {
             const Vec2<double> on_side = find_place_on_side(k, s),
                                across = find_place_on_side((k + 2) % 4, 1 - s);
-            for (const double part : {0.03, 0.09}) {
+            for (const double part : parts) {
                 const double x = on_side.x + (across.x - on_side.x) * part,
                              y = on_side.y + (across.y - on_side.y) * part;
                 Sample sample{evaluate(x, y), x, y, x, y};

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "surface/mesh/curve_fit.h"
 #include "surface/mesh/side_fit.h"
 #include "surface/mesh/subdivision_mesh.h"
 #include "surface/mesh/uv_matching.h"
@@ -59,6 +60,8 @@ class PatchFit {
     Vec3d evaluate_edge(size_t k, double s) const;
     Vec3d find_normal(size_t k, const LimitSample& sample) const;
     Vec3d flatten(const Vec3d& control, size_t k) const;
+    SideFit start_side(size_t k) const;
+    double measure_side(const Curve& curve, size_t k) const;
 
     struct Sample {
         Vec3d target;

@@ -44,8 +44,8 @@ SideFit PatchFit::fit_side_to_uvs(size_t k, const UvMatching& uvs, bool may_leav
     std::array<UvMatching::Match, kSideSamples> matches;
     std::array<Vec3d, kSideSamples> targets;
     PointFit fit(2);
-    SideFit side;
-    side.first_point = refined_.points[quad_][k], side.follows_uvs = true;
+    SideFit side = start_side(k);
+    side.follows_uvs = true;
     for (size_t n = 0; n < kSideSamples; ++n) {
         const double s = place_of_side_sample(n);
         const Vec2<double> place = find_place_on_side(k, s);
@@ -68,6 +68,8 @@ SideFit PatchFit::fit_side_to_uvs(size_t k, const UvMatching& uvs, bool may_leav
                  misses);
     }
     side.off = misses.off, side.uv_error = misses.uv_error;
+    if (face_.has_creases())
+        side.off = std::max(side.off, measure_side({corner_[k], inner[0], inner[1], corner_[next]}, k));
     return side;
 }
 
@@ -86,6 +88,7 @@ void PatchFit::fit_inside_to_uvs(const UvMatching& uvs) {
     for (size_t k = 0; k < samples.size(); ++k)
         add_miss(matches[k], blend(samples[k].x, samples[k].y) - samples[k].target, misses);
     distance_ = misses.off, uv_error_ = misses.uv_error;
+    if (!is_in_bicubic_part_) distance_ = std::max(distance_, measure_beside_sides());
 }
 
 Vec3d PatchFit::blend(double x, double y) const {

@@ -46,6 +46,30 @@ bool is_aligned(const std::array<Vec2<double>, 4>& c) {
            c[2] - c[1] == c[3] - c[0];
 }
 
+/// Largest length per uv at the corners of a quad, or at the corner of a polygon's part, whose uvs are
+/// linear.
+double measure_stretch(const LimitFace& positions, const Cage& cage, uint32_t face, uint32_t part) {
+    const uint32_t start = cage.starts[face], size = cage.face_size(face);
+    const auto uv = [&](uint32_t k) {
+        const Vec2f& found = cage.uvs[0][start + k % size];
+        return Vec2<double>{found.x, found.y};
+    };
+    constexpr std::array<Vec2<double>, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    double stretch = 0;
+    for (uint32_t k = 0; k < 4; ++k) {
+        const uint32_t corner = size == 4 ? k : part;
+        const double side = size == 4 ? 1 : 0.5; // of a part
+        const Vec2<double> to_next = (uv(corner + 1) - uv(corner)) * side,
+                           to_previous = (uv(corner + size - 1) - uv(corner)) * side;
+        const double area = std::fabs(to_next.x * to_previous.y - to_next.y * to_previous.x);
+        const Vec2<double> place = size == 4 ? kCorners[k] : kCorners[0];
+        const LimitSample sample = positions.evaluate(size == 4 ? 0 : part, place.x, place.y);
+        if (area > 0)
+            stretch = std::max(stretch, std::sqrt(compute_length(cross(sample.du, sample.dv)) / area));
+    }
+    return stretch;
+}
+
 } // namespace
 
 PatchJudge::PatchJudge(const SubdivisionMesh& mesh, const Polygons& polygons, const BaseNeeds& needs)
@@ -73,8 +97,10 @@ void PatchJudge::measure_bends(const SubdivisionMesh& mesh, const Cage& cage) {
                 std::array<bool, 4> is_sharp{};
                 for (uint32_t k = 0; k < 4; ++k)
                     is_sharp[k] = is_quad && cage.is_sharp[cage.edges[cage.starts[face] + k]];
-                bends_[first_bends_[face] + part] =
-                    measure_bend(positions ? &*positions : nullptr, uvs ? &*uvs : nullptr, part, is_sharp);
+                FaceBend& bend = bends_[first_bends_[face] + part];
+                bend = measure_bend(positions ? &*positions : nullptr, uvs ? &*uvs : nullptr, part, is_sharp);
+                if (needs_.has_relative_lengths && cage.has_uvs && !has_uvs)
+                    bend.stretch = measure_stretch(*positions, cage, face, part);
             }
         }
     });
@@ -92,6 +118,12 @@ double PatchJudge::find_tolerance(const QuadPlace& place) const {
 /// Whether the parameters of a patch are to follow its uvs.
 bool PatchJudge::follows_uvs(const RefinedMesh& refined, const FaceBend& bend) const {
     return needs_.change && !refined.uvs.empty() && has_curved_uvs(bend);
+}
+
+bool PatchJudge::needs_fit(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits) const {
+    const QuadPlace& place = refined.places[quad];
+    return follows_uvs(refined, bend_of(place)) || !is_aligned(place.corners) ||
+           !limits.positions().is_bicubic_within(place);
 }
 
 std::array<SideFit, 4> PatchJudge::fit_sides(const RefinedMesh& refined, uint32_t quad,
@@ -127,8 +159,9 @@ SideFit PatchJudge::fit_side(PatchFit& fit, size_t k, const UvMatching& matching
     };
     const auto fit_plain = [&] {
         SideFit plain = fit.fit_side(k);
-        for (const double s : plain.places)
-            plain.uv_error = find_larger(plain.uv_error, matching.measure_on_side(k, s, s));
+        for (size_t n = 0; n < kSideSamples; ++n)
+            plain.uv_error = find_larger(
+                plain.uv_error, matching.measure_on_side(k, place_of_side_sample(n), plain.places[n]));
         return plain;
     };
     std::optional<SideFit> plain;
@@ -154,7 +187,7 @@ void PatchJudge::judge_flat(const QuadPlace& place, const FaceBend& bend, Judgem
     judgement.splits_v = choose(along_v.position, axes.v);
 }
 
-Judgement PatchJudge::judge(const RefinedMesh& refined, uint32_t quad, const std::array<JudgedSide, 4>& sides,
+Judgement PatchJudge::judge(const RefinedMesh& refined, uint32_t quad, const SideFits& sides,
                             LimitSurfaces& limits) const {
     Judgement judgement;
     const QuadPlace& place = refined.places[quad];
@@ -170,12 +203,12 @@ Judgement PatchJudge::judge(const RefinedMesh& refined, uint32_t quad, const std
     const bool is_exact = is_aligned(place.corners) && limits.positions().is_bicubic_within(place);
     const bool follows = follows_uvs(refined, bend);
     bool has_exact_sides = is_exact;
-    for (const JudgedSide& side : sides) has_exact_sides = has_exact_sides && !side.fit->follows_uvs;
+    for (const SideFit* side : sides) has_exact_sides = has_exact_sides && !(side && side->follows_uvs);
     // As it is, the patch has no error but that of its uvs.
     PatchError error;
     if (has_exact_sides && follows)
         error.change = find_change(refined.uvs[quad], along_u.uv + along_v.uv, place);
-    for (const JudgedSide& side : sides) error.off = std::max(error.off, side.fit->off);
+    for (const SideFit* side : sides) error.off = std::max(error.off, side ? side->off : 0.0);
     if (!has_exact_sides || error.change + frame_u + frame_v > tolerance) {
         judgement.depends_on_tolerance = has_exact_sides;
         if (!has_exact_sides || follows) {
@@ -195,30 +228,38 @@ Judgement PatchJudge::judge(const RefinedMesh& refined, uint32_t quad, const std
     judgement.splits_v = (has_bad_uvs || frame_v > cause) && measure(axes.v) > finest;
     judgement.splits_fit = !is_exact && error.off > cause && smallest > std::ldexp(1.5, -kFinestPatchLevel);
     if (judgement.splits_fit) judgement.splits_u = judgement.splits_v = false;
+    for (size_t k = 0; k < 4; ++k)
+        judgement.splits_side[k] = judgement.splits_fit && sides[k] && sides[k]->off > cause;
     return judgement;
 }
 
+/// Measures how far uvs are off on a side that was fitted for a quad with other uvs.
+void PatchJudge::measure_seam(const RefinedMesh& refined, uint32_t quad, size_t k, const UvMatching& matching,
+                              SideFit& side) {
+    const bool is_same_way = side.first_point == refined.points[quad][k];
+    const Vec2f &begin = refined.uvs[quad][k], &end = refined.uvs[quad][(k + 1) % 4];
+    const bool is_seam = !(begin == side.uvs[is_same_way ? 0 : 1] && end == side.uvs[is_same_way ? 1 : 0]);
+    if (!is_seam) return;
+    side.uv_error = {};
+    for (size_t n = 0; n < kSideSamples; ++n) {
+        const double s = place_of_side_sample(n), place = side.places[n];
+        side.uv_error = find_larger(side.uv_error, matching.measure_on_side(k, is_same_way ? s : 1 - s,
+                                                                            is_same_way ? place : 1 - place));
+    }
+}
+
 /// Fits the inside of a patch between its sides.
-PatchJudge::PatchError PatchJudge::fit_patch(const RefinedMesh& refined, uint32_t quad,
-                                             const std::array<JudgedSide, 4>& sides, bool follows,
-                                             LimitSurfaces& limits, Judgement& judgement) const {
+PatchJudge::PatchError PatchJudge::fit_patch(const RefinedMesh& refined, uint32_t quad, const SideFits& sides,
+                                             bool follows, LimitSurfaces& limits,
+                                             Judgement& judgement) const {
     PatchFit fit(limits.positions(), refined, quad);
     std::optional<UvMatching> matching;
     if (follows) matching.emplace(limits.uvs(), refined.places[quad], refined.uvs[quad]);
     for (size_t k = 0; k < 4; ++k) {
-        SideFit side = *sides[k].fit;
-        const bool is_same_way = side.first_point == refined.points[quad][k];
-        // Its errors were measured by the uvs across.
-        if (sides[k].is_seam && (follows || side.follows_uvs)) {
-            side.uv_error = {};
+        SideFit side = sides[k] ? *sides[k] : fit.fit_side(k);
+        if (follows || side.follows_uvs) {
             if (!matching) matching.emplace(limits.uvs(), refined.places[quad], refined.uvs[quad]);
-            for (size_t n = 0; n < kSideSamples; ++n) {
-                const double s = place_of_side_sample(n);
-                side.uv_error =
-                    find_larger(side.uv_error,
-                                matching->measure_on_side(k, is_same_way ? s : 1 - s,
-                                                          is_same_way ? side.places[n] : 1 - side.places[n]));
-            }
+            measure_seam(refined, quad, k, *matching, side);
         }
         fit.take_side(k, side);
     }
@@ -239,14 +280,17 @@ PatchJudge::PatchError PatchJudge::fit_patch(const RefinedMesh& refined, uint32_
     return choose_nearest(with_sides, uvs, place, error, judgement);
 }
 
-/// Takes the patch that is nearest to the surface in place of one with the error `before`, if it is better.
+/// Chooses the patch that is nearest to the surface if that is better than one with the error `before`.
 PatchJudge::PatchError PatchJudge::choose_nearest(const PatchFit& with_sides, const std::array<Vec2f, 4>& uvs,
                                                   const QuadPlace& place, const PatchError& before,
                                                   Judgement& judgement) const {
     PatchFit nearest = with_sides;
     nearest.fit_inside();
-    const PatchError error{nearest.distance(),
-                           find_change(uvs, find_extent(uvs) * nearest.lag() + nearest.uv_error(), place)};
+    const QuadAxes axes(place.corners);
+    const Vec2<double> bent =
+        find_bend_along(bend_of(place), axes.u).uv + find_bend_along(bend_of(place), axes.v).uv;
+    const Vec2<double> uv_error = find_extent(uvs) * nearest.lag() + find_larger(nearest.uv_error(), bent);
+    const PatchError error{nearest.distance(), find_change(uvs, uv_error, place)};
     if (error.sum() >= before.sum()) return before;
     judgement.fitted = std::make_unique<std::array<Vec3d, 12>>(nearest.controls());
     return error;

@@ -21,6 +21,7 @@ inline constexpr int kFinestUvLevel = 3, kFinestPatchLevel = 6;
 struct Judgement {
     bool splits_u = false, splits_v = false;       ///< its edges along that direction
     bool splits_fit = false;                       ///< the fitted patch is too far away
+    std::array<bool, 4> splits_side{};             ///< with splits_fit: so is the curve of that side
     std::unique_ptr<std::array<Vec3d, 12>> fitted; ///< null: the patch is that of the face itself
     bool depends_on_tolerance = false;             ///< another tolerance might choose another fit
     double part = 0; ///< of the tolerance that the errors come to, also where no smaller quads are allowed
@@ -42,25 +43,25 @@ struct LimitSurfaces {
     }
 };
 
-/// A side of a quad as judge() takes it.
-struct JudgedSide {
-    const SideFit* fit = nullptr;
-    bool is_seam = false; ///< the quad that the fit comes from has other uvs there
-};
+/// The curves of a quad's sides; null where both quads are exact.
+using SideFits = std::array<const SideFit*, 4>;
 
-/// Refers to its arguments. Thread safe, but for each face one thread at a time.
+/// Refers to its arguments. Several threads may judge quads of different faces.
 class PatchJudge {
   public:
     PatchJudge(const SubdivisionMesh& mesh, const Polygons& polygons, const BaseNeeds& needs);
 
-    /// Fits the curves of those sides of a quad that are wanted. `is_seam`: see JudgedSide, of the quad
-    /// across.
+    /// Whether the patch of a quad cannot be that of the face itself, so that its sides have to be fitted.
+    bool needs_fit(const RefinedMesh& refined, uint32_t quad, LimitSurfaces& limits) const;
+
+    /// Fits the curves of those sides of a quad that are wanted. `is_seam`: the quad across has other uvs
+    /// there.
     std::array<SideFit, 4> fit_sides(const RefinedMesh& refined, uint32_t quad,
                                      const std::array<bool, 4>& is_wanted, const std::array<bool, 4>& is_seam,
                                      LimitSurfaces& limits) const;
 
     /// Finds what is too far away at a quad. With bilinear patches `sides` are not looked at.
-    Judgement judge(const RefinedMesh& refined, uint32_t quad, const std::array<JudgedSide, 4>& sides,
+    Judgement judge(const RefinedMesh& refined, uint32_t quad, const SideFits& sides,
                     LimitSurfaces& limits) const;
 
   private:
@@ -76,9 +77,11 @@ class PatchJudge {
     bool follows_uvs(const RefinedMesh& refined, const FaceBend& bend) const;
     SideFit fit_side(PatchFit& fit, size_t k, const UvMatching& matching, const std::array<Vec2f, 4>& uvs,
                      bool may_leave_side, const QuadPlace& place) const;
+    static void measure_seam(const RefinedMesh& refined, uint32_t quad, size_t k, const UvMatching& matching,
+                             SideFit& side);
     void judge_flat(const QuadPlace& place, const FaceBend& bend, Judgement& judgement) const;
-    PatchError fit_patch(const RefinedMesh& refined, uint32_t quad, const std::array<JudgedSide, 4>& sides,
-                         bool follows, LimitSurfaces& limits, Judgement& judgement) const;
+    PatchError fit_patch(const RefinedMesh& refined, uint32_t quad, const SideFits& sides, bool follows,
+                         LimitSurfaces& limits, Judgement& judgement) const;
     PatchError choose_nearest(const PatchFit& with_sides, const std::array<Vec2f, 4>& uvs,
                               const QuadPlace& place, const PatchError& before, Judgement& judgement) const;
     double find_change(const std::array<Vec2f, 4>& uvs, const Vec2<double>& error,

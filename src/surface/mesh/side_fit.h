@@ -16,6 +16,7 @@ inline double place_of_side_sample(size_t k) { return double(k + 1) / (kSideSamp
 
 struct SideFit {
     uint32_t first_point = kNoIndex;           ///< the end of the edge that the curve begins at
+    std::array<Vec2f, 2> uvs{};                ///< at both ends, of the quad that it was fitted for
     std::array<Vec3d, 2> inner{};              ///< control points between the ends
     double off = 0;                            ///< largest distance of the limit surface from the curve
     Vec2<double> uv_error{};                   ///< how far uvs are off at most, per coordinate

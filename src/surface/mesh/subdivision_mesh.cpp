@@ -23,8 +23,8 @@ constexpr int kStepsBeyond = 7;
 constexpr int kMostSteps = 10;
 /// The same of uvs where faces are cut no finer than a tolerance asks for: maps are read between texels.
 constexpr int kStepsOfUvs = 4;
-/// Limit surfaces that are kept, with a few thousand bytes each.
-constexpr std::ptrdiff_t kMostKept = 1 << 15;
+/// Quads, and parts of polygons, whose limit surfaces are kept, with 5 to 12 kB each.
+constexpr uint64_t kMostKept = 1 << 14;
 
 /// What OpenSubdiv complained of last, which it would print otherwise.
 thread_local std::string complaint;
@@ -223,9 +223,13 @@ SubdivisionMesh::SubdivisionMesh(const Polygons& polygons, const Subdivision& su
         std::vector<double>& points = self.uv_points.emplace_back();
         for (const Vec2f& uv : set.values) points.insert(points.end(), {uv.x, uv.y, 0});
     }
-    if (subdivision.scheme == SubdivisionScheme::catmark) self.find_bicubic_faces(), self.find_spline_uvs();
-    const auto irregular = std::count(self.is_bicubic.begin(), self.is_bicubic.end(), false);
-    if (is_automatic && irregular <= kMostKept) {
+    if (subdivision.scheme == SubdivisionScheme::catmark) self.find_bicubic_faces();
+    if (self.has_smooth_uvs && self.level <= 1) self.find_spline_uvs();
+    uint64_t irregular_parts = 0;
+    for (uint32_t face = 0; face < self.is_bicubic.size(); ++face)
+        if (!self.is_bicubic[face])
+            irregular_parts += polygons.face_size(face) == 4 ? 1 : polygons.face_size(face);
+    if (is_automatic && irregular_parts <= kMostKept) {
         self.kept_faces.resize(polygons.face_count());
         self.kept_uv_faces.assign(self.uv_sets.size(), self.kept_faces);
     }

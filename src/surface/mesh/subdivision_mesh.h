@@ -42,8 +42,8 @@ struct RefinedMesh {
     uint32_t quad_count() const { return uint32_t(points.size()); }
 };
 
-/// Immutable; its faces may be made by any thread, but each by one at a time. The cage is made by the first
-/// thread that asks for it, while no other does.
+/// Immutable for its users. Several threads may make and evaluate faces, but each face is made and evaluated
+/// by one thread at a time. The cage is made by the first thread that asks for it, while no other does.
 class SubdivisionMesh {
   public:
     /// The scheme must not be `none`. Throws bad_input with mesh and points for non-manifold or

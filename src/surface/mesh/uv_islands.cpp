@@ -13,7 +13,7 @@ namespace {
 
 using Point = UvIslands::Point;
 
-constexpr uint32_t kProbes = 64;         ///< a side: texels looked at before anything is worked out
+constexpr uint32_t kProbes = 64;         ///< texels per side that are looked at before anything is computed
 constexpr uint32_t kFewestAlike = 40;    ///< of them, about one in a hundred: less is no background
 constexpr double kCoverTolerance = 1e-3; ///< texels
 constexpr size_t kFacesALook = 1024;     ///< at whether the work is to stop

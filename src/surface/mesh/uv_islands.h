@@ -1,4 +1,5 @@
-// The faces of meshes in the plane of their uvs, counted in texels of one image: what of a map is used.
+// The faces of meshes in the plane of their uvs, counted in texels of one image, which show the used part of
+// a map.
 #pragma once
 
 #include <array>
@@ -40,7 +41,7 @@ class TexelCensus {
 /// Looks at a few thousand texels: a map that is baked all over has hardly two alike.
 bool may_have_background(const Texture& texture);
 
-/// A bit a texel.
+/// One bit per texel.
 class TexelMask {
   public:
     TexelMask() = default;

@@ -8,8 +8,9 @@ namespace relief {
 namespace {
 
 constexpr int kSteps = 3; // of Newton's method
-/// Places are at most this far outside of the quad, in parts of it.
-constexpr double kFurthest = 0.25;
+/// Places are at most this far outside of the quad, in parts of it: the neighbour's surface leaves the
+/// continuation of the face's with the third power of the way.
+constexpr double kFurthest = 0.1;
 
 template <class Value> Value blend(const std::array<Value, 4>& c, double x, double y) {
     return (c[0] * (1 - x) + c[1] * x) * (1 - y) + (c[3] * (1 - x) + c[2] * x) * y;

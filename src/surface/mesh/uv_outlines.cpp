@@ -48,7 +48,7 @@ Vec2f evaluate_side(const LimitFace& limit, uint32_t size, uint32_t k, double s)
     return {float(uv.x), float(uv.y)};
 }
 
-/// Calls `add` with the outline of each patch at the mesh's level.
+/// Outlines of the patches at the mesh's level.
 UvOutlines make_patch_outlines(const Mesh& mesh) {
     UvOutlines outlines;
     const Polygons polygons = make_polygons(mesh, Welding::equal_points);

@@ -20,8 +20,8 @@ struct UvOutlines {
     void end_face() { starts.push_back(uvs.size()); }
 };
 
-/// Whether patches of the mesh have limit uvs and are cut by the view, so that only the limit itself tells
-/// their outlines.
+/// Whether patches of the mesh have limit uvs and are cut by the view, so that their outlines have to be
+/// those of the limit itself.
 bool has_curved_outlines(const Mesh& mesh);
 
 /// Corners of the faces, or of the patches at the level of a mesh that is subdivided with smooth uvs. Faces
