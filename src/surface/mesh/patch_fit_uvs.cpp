@@ -88,7 +88,7 @@ void PatchFit::fit_inside_to_uvs(const UvMatching& uvs) {
     for (size_t k = 0; k < samples.size(); ++k)
         add_miss(matches[k], blend(samples[k].x, samples[k].y) - samples[k].target, misses);
     distance_ = misses.off, uv_error_ = misses.uv_error;
-    if (!is_in_bicubic_part_) distance_ = std::max(distance_, measure_beside_sides());
+    if (face_.has_creases()) distance_ = std::max(distance_, measure_beside_sides());
 }
 
 Vec3d PatchFit::blend(double x, double y) const {
