@@ -182,7 +182,7 @@ class NodeValues:
         if node.operation == "MULTIPLY" and not node.use_clamp:
             return values.multiply(*inputs, self.texels)
         clamp = (lambda v: np.clip(v, 0, 1)) if node.use_clamp else (lambda v: v)
-        return values.combine(lambda *arrays: clamp(function(*arrays)), inputs, self.texels)
+        return values.combine(lambda *arrays: clamp(function(*arrays)), inputs, self.texels, by_channel=True)
 
     def _vector_math(self, source):
         node = source.node

@@ -44,12 +44,22 @@ def make_constant(value):
     return Constant(array[:3].copy() if array.size >= 3 else np.full(3, array[0], np.float32))
 
 
+def repeat_number(texels):
+    """A read-only view (height, width, 3) of one channel (height, width, 1): a number has three equal channels."""
+    return np.broadcast_to(texels, (*texels.shape[:2], 3))
+
+
+def is_number(array):
+    """Whether texels are a view of one channel, or a constant has three equal channels."""
+    return array.strides[-1] == 0 if array.ndim == 3 else array.min() == array.max()
+
+
 def pick_channel(rgba, channel):
     """(height, width, 3) of the (height, width, 4) texels of an image."""
     if not channel:
         return rgba[..., :3]
     one = rgba[..., :3] @ LUMINANCE if channel == "luminance" else rgba[..., "rgba".index(channel)]
-    return np.repeat(one[..., None], 3, -1)
+    return repeat_number(one[..., None])
 
 
 class Texels:
@@ -83,6 +93,9 @@ class Texels:
         source = value.tiles or {n: pick_channel(t, value.channel) for n, t in self.read(value.image).items()}
         if np.all(value.factor == 1):
             return source
+        if is_number(value.factor):
+            return {number: repeat_number(texels[..., :1] * value.factor[0]) if is_number(texels) else texels * value.factor[0]
+                    for number, texels in source.items()}
         return {number: texels * value.factor for number, texels in source.items()}
 
 
@@ -109,8 +122,9 @@ def common_place(values):
     return textured[0].place
 
 
-def combine(function, values, texels):
-    """function(*arrays of (..., 3)) of values, as one value: a constant, or a new texture."""
+def combine(function, values, texels, by_channel=False):
+    """function(*arrays of (..., 3)) of values, as one value: a constant, or a new texture. `by_channel`: each channel of the
+    result depends on that of the arguments alone, so that numbers are computed once."""
     if all(isinstance(value, Constant) for value in values):
         return Constant(np.asarray(function(*(v.rgb for v in values)), np.float32))
     place = common_place(values)
@@ -122,7 +136,11 @@ def combine(function, values, texels):
         height = max(p.shape[0] for p in parts if p.ndim == 3)
         width = max(p.shape[1] for p in parts if p.ndim == 3)
         parts = [resample(p, height, width) if p.ndim == 3 else p for p in parts]
-        result[number] = np.ascontiguousarray(np.broadcast_to(function(*parts), (height, width, 3)), np.float32)
+        if by_channel and all(is_number(p) for p in parts):
+            one = function(*(p[..., :1] for p in parts))
+            result[number] = repeat_number(np.ascontiguousarray(np.broadcast_to(one, (height, width, 1)), np.float32))
+        else:
+            result[number] = np.ascontiguousarray(np.broadcast_to(function(*parts), (height, width, 3)), np.float32)
     return Textured(place, tiles=result)
 
 
@@ -132,7 +150,7 @@ def multiply(a, b, texels):
         a, b = b, a
     if isinstance(a, Textured) and isinstance(b, Constant):
         return replace(a, factor=a.factor * b.rgb)
-    return combine(np.multiply, [a, b], texels)
+    return combine(np.multiply, [a, b], texels, by_channel=True)
 
 
 def to_number(value, texels):
@@ -143,6 +161,8 @@ def to_number(value, texels):
         return value
     if value.tiles is None and not value.channel and np.all(value.factor == 1):
         return replace(value, channel="luminance")
+    if value.tiles and np.ptp(value.factor) == 0 and all(is_number(t) for t in value.tiles.values()):
+        return value
     return combine(lambda rgb: np.repeat((rgb @ LUMINANCE)[..., None], 3, -1), [value], texels)
 
 

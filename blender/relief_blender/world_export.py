@@ -66,18 +66,19 @@ def look_up(texels, directions, is_mirror_ball):
     c0, r0 = np.floor(column).astype(int), np.floor(row).astype(int)
     fc, fr = (column - c0)[..., None], (row - r0)[..., None]
     c0, c1, r1 = c0 % width, (c0 + 1) % width, np.minimum(r0 + 1, height - 1)
-    return ((texels[r0, c0] * (1 - fc) + texels[r0, c1] * fc) * (1 - fr)
-            + (texels[r1, c0] * (1 - fc) + texels[r1, c1] * fc) * fr)
+    flat, r0, r1 = texels.reshape(-1, texels.shape[-1]), r0 * width, r1 * width
+    return ((flat[r0 + c0] * (1 - fc) + flat[r0 + c1] * fc) * (1 - fr)
+            + (flat[r1 + c0] * (1 - fc) + flat[r1 + c1] * fc) * fr)
 
 
 def turn_picture(texels, matrix, is_mirror_ball):
     """The picture as Relief wants it: longitude and latitude about -z, read through a matrix."""
     height, width = (texels.shape[0], 2 * texels.shape[0]) if is_mirror_ball else texels.shape[:2]
-    phi = ((np.arange(width) + 0.5) / width - 0.5) * 2 * np.pi
-    theta = (np.arange(height) + 0.5) / height * np.pi
+    phi = (((np.arange(width) + 0.5) / width - 0.5) * 2 * np.pi).astype(np.float32)
+    theta = ((np.arange(height) + 0.5) / height * np.pi).astype(np.float32)
     sine = np.sin(theta)[:, None]
     ways = np.stack([sine * np.sin(phi), np.broadcast_to(np.cos(theta)[:, None], (height, width)), -sine * np.cos(phi)], -1)
-    return look_up(texels, convert_back(ways) @ matrix.T, is_mirror_ball).astype(np.float32)
+    return look_up(texels, convert_back(ways) @ matrix.T.astype(np.float32), is_mirror_ball).astype(np.float32)
 
 
 class WorldReader:

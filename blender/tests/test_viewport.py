@@ -32,7 +32,8 @@ class Engine:
         self.errors.append(text)
 
     def update_stats(self, label, text):
-        if label or not text:  # the status, which comes without a label, depends on how long things take
+        # The status, which comes without a label and is cleared too, depends on how long things take.
+        if label or not text and self.texts and self.texts[-1]:
             self.texts.append(text)
 
 
