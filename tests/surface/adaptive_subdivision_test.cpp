@@ -236,7 +236,7 @@ TEST(AutomaticLevels, patches_beside_seams_have_the_limit_uvs_within_the_toleran
                     worst = std::max(worst, compute_length(off) * kSlope / 3.3);
                 }
         }
-        EXPECT_LT(worst, 2 * tolerance) << exponent << ", " << adapted.refined.quad_count() << " quads";
+        EXPECT_LT(worst, tolerance) << exponent << ", " << adapted.refined.quad_count() << " quads";
         EXPECT_GT(worst, 0.1 * tolerance);
         EXPECT_LT(adapted.refined.quad_count(), 20000u);
     }

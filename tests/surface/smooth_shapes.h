@@ -91,8 +91,8 @@ inline Mesh make_fine_cube() {
             const auto known = std::find(mesh.positions.begin(), mesh.positions.end(), bent);
             points.push_back(uint32_t(known - mesh.positions.begin()));
             if (known == mesh.positions.end()) mesh.positions.push_back(bent);
-            uvs.push_back(
-                {float(side) + 0.4f + 0.3f * a + 0.05f * b * b, 0.5f + 0.35f * b + 0.04f * std::sin(3 * a)});
+            uvs.push_back({float(side) + 0.4f + 0.3f * a + 0.05f * b * b + 0.05f * std::cos(3 * a + 1),
+                           0.5f + 0.35f * b + 0.04f * std::sin(3 * a)});
         }
         add_face(mesh, points, uvs);
     };
