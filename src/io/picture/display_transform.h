@@ -40,7 +40,7 @@ DisplaySettings read_display_settings(const Image& image);
 /// infinite ones as 1.
 Vec3f show_color(const Vec3f& linear, const DisplaySettings& settings);
 
-/// As show_color, but much faster for AgX; each value is at most kEstimateTolerance from that of show_color.
+/// Estimates the result of show_color() in less time for AgX: each value is at most kEstimateTolerance away.
 Vec3f estimate_color(const Vec3f& linear, const DisplaySettings& settings);
 inline constexpr float kEstimateTolerance = 5e-6f;
 

@@ -186,11 +186,9 @@ class AdaptiveCage {
         std::vector<uint8_t> is_seam(refined.first_quads.size());
         for (uint32_t quad = 0; quad < refined.quad_count() && !refined.uvs.empty(); ++quad)
             for (size_t k = 0; k < 4; ++k) {
-                const uint32_t edge = refined.edges[quad][k], owner = refined.first_quads[edge];
-                if (owner == quad) continue;
-                const std::array<uint32_t, 4>& edges = refined.edges[owner];
-                const size_t other = size_t(std::ranges::find(edges, edge) - edges.begin());
-                const bool is_same_way = refined.points[owner][other] == refined.points[quad][k];
+                const uint32_t edge = refined.edges[quad][k];
+                if (refined.first_quads[edge] == quad) continue;
+                const auto [owner, other, is_same_way] = find_owner_side(refined, quad, k);
                 const Vec2f &begin = refined.uvs[owner][(other + (is_same_way ? 0 : 1)) % 4],
                             &end = refined.uvs[owner][(other + (is_same_way ? 1 : 0)) % 4];
                 if (!(refined.uvs[quad][k] == begin && refined.uvs[quad][(k + 1) % 4] == end))

@@ -65,10 +65,6 @@ Vec2<double> measure_uvs(const Grid<Vec3d>& uvs, size_t direction) {
     return largest;
 }
 
-} // namespace
-
-namespace {
-
 void measure_uv_bend(const Grid<Vec3d>& points, FaceBend& bend) {
     for (size_t direction = 0; direction < 2; ++direction)
         bend.uv[direction] = measure_uvs(points, direction);

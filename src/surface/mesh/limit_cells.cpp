@@ -11,7 +11,7 @@ namespace {
 /// Cells of a 2048th of the face are the smallest; within them the surface is nearly flat.
 constexpr size_t kMostLevels = 10;
 
-/// Where corner k of the face is in the grid of its four cells, and the steps along its sides.
+/// Corner k of the face has this place in the grid of its four cells; kAlong is the step along side k.
 constexpr std::array<std::array<int, 2>, 4> kCorner = {{{1, 1}, {3, 1}, {3, 3}, {1, 3}}};
 constexpr std::array<std::array<int, 2>, 4> kAlong = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 

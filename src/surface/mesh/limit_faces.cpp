@@ -14,8 +14,8 @@ namespace {
 
 using GridPlace = std::array<size_t, 2>; ///< column and row of SplineControls
 
-/// Where the corners of a face are, what lies behind edge k next to its begin and to its end, and what lies
-/// diagonally behind corner k.
+/// The corners of a face have the places kCorners. The points behind edge k, next to its begin and to its
+/// end, have kBehindEdge, and the point diagonally behind corner k has kBehindCorner.
 constexpr std::array<GridPlace, 4> kCorners = {{{1, 1}, {2, 1}, {2, 2}, {1, 2}}};
 constexpr std::array<std::array<GridPlace, 2>, 4> kBehindEdge = {
     {{{{1, 0}, {2, 0}}}, {{{3, 1}, {3, 2}}}, {{{2, 3}, {1, 3}}}, {{{0, 2}, {0, 1}}}}};

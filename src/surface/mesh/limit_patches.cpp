@@ -21,17 +21,21 @@ std::vector<uint32_t> find_first_quads(const RefinedMesh& refined) {
 void share_edges(const RefinedMesh& refined, std::vector<InnerControls>& controls) {
     for (uint32_t quad = 0; quad < refined.quad_count(); ++quad)
         for (size_t k = 0; k < 4; ++k) {
-            const uint32_t edge = refined.edges[quad][k], owner = refined.first_quads[edge];
-            if (owner == quad) continue;
-            const std::array<uint32_t, 4>& edges = refined.edges[owner];
-            const size_t other = size_t(std::find(edges.begin(), edges.end(), edge) - edges.begin());
-            const bool is_same_way = refined.points[owner][other] == refined.points[quad][k];
+            if (refined.first_quads[refined.edges[quad][k]] == quad) continue;
+            const auto [owner, other, is_same_way] = find_owner_side(refined, quad, k);
             controls[quad][2 * k] = controls[owner][2 * other + (is_same_way ? 0 : 1)];
             controls[quad][2 * k + 1] = controls[owner][2 * other + (is_same_way ? 1 : 0)];
         }
 }
 
 } // namespace
+
+OwnerSide find_owner_side(const RefinedMesh& refined, uint32_t quad, size_t side) {
+    const uint32_t edge = refined.edges[quad][side], owner = refined.first_quads[edge];
+    const std::array<uint32_t, 4>& edges = refined.edges[owner];
+    const auto other = size_t(std::ranges::find(edges, edge) - edges.begin());
+    return {owner, other, refined.points[owner][other] == refined.points[quad][side]};
+}
 
 std::vector<uint32_t> find_face_runs(const RefinedMesh& refined) {
     std::vector<uint32_t> starts;

@@ -19,6 +19,14 @@ struct LimitPatches {
 /// First quad of each run of quads on one face, and the end of the last run.
 std::vector<uint32_t> find_face_runs(const RefinedMesh& refined);
 
+/// A side as the lowest quad at its edge has it.
+struct OwnerSide {
+    uint32_t quad;
+    size_t side;
+    bool is_same_way; ///< both quads have its ends in the same order
+};
+OwnerSide find_owner_side(const RefinedMesh& refined, uint32_t quad, size_t side);
+
 /// Makes the patches of `refined`, which is a refinement of `mesh`. Control points, which take most of the
 /// time, are optional.
 LimitPatches make_limit_patches(const SubdivisionMesh& mesh, const RefinedMesh& refined,

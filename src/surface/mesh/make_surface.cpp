@@ -272,7 +272,7 @@ BaseTolerance choose_tolerance(const SurfaceContext& context, const Polygons& po
     return {find_tolerance_exponent(double(length(box.extent())) / 8192), {}};
 }
 
-/// That of the context, unless it lacks uv sets that are wanted.
+/// Returns the limit surface of the context, or null if that lacks uv sets that are wanted.
 const SubdivisionMesh* get_limit(const SurfaceContext& context) {
     return context.uv_sets.empty() ? context.limit : nullptr;
 }

@@ -104,7 +104,7 @@ Vec3d PatchFit::flatten(const Vec3d& control, size_t k) const {
 
 namespace {
 
-/// Where on the side the curve is at parameter s: between the targets.
+/// Finds the place on the side that the curve passes at parameter s, by interpolation between the targets.
 double find_place_of_parameter(const CurvePlaces& places, double s) {
     double parameter = 0, place = 0;
     for (int k = 0; k <= kFitCount; ++k) {

@@ -204,7 +204,7 @@ Judgement PatchJudge::judge(const RefinedMesh& refined, uint32_t quad, const Sid
     const bool follows = follows_uvs(refined, bend);
     bool has_exact_sides = is_exact;
     for (const SideFit* side : sides) has_exact_sides = has_exact_sides && !(side && side->follows_uvs);
-    // As it is, the patch has no error but that of its uvs.
+    // The patch of the face itself is exact except for its uvs.
     PatchError error;
     if (has_exact_sides && follows)
         error.change = find_change(refined.uvs[quad], along_u.uv + along_v.uv, place);

@@ -115,10 +115,6 @@ Polygons make_quads(const RefinedMesh& refined, const Polygons& source) {
     return polygons;
 }
 
-} // namespace
-
-namespace {
-
 RefinedMesh refine_to_level(SubdivisionMesh& mesh, const Polygons& polygons, const Subdivision& subdivision,
                             const BaseNeeds& needs) {
     check_patch_count(mesh.quad_count(), polygons.where,

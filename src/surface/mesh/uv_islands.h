@@ -95,7 +95,7 @@ class UvIslands {
 
   private:
     struct Edge {
-        uint64_t low, high; ///< the bits of its uvs
+        uint64_t low, high; ///< uvs of its ends as keys, the smaller one first
         size_t from, to;    ///< in `corners_`
         bool is_shared = false;
         bool joins_same(const Edge& other) const { return low == other.low && high == other.high; }
