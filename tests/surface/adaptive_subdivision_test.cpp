@@ -26,10 +26,13 @@ using test::Shape;
 struct Adapted {
     Adapted(const Mesh& mesh, int exponent, BasePatches patches_wanted = BasePatches::bicubic,
             const DisplacementChange* change = nullptr)
+        : Adapted(mesh, BaseTolerance{exponent, {}}, patches_wanted, change) {}
+
+    Adapted(const Mesh& mesh, const BaseTolerance& tolerance, BasePatches patches_wanted,
+            const DisplacementChange* change)
         : polygons(make_polygons(mesh, Welding::equal_points)),
           source(polygons, mesh.subdivision),
-          refined(
-              refine_adaptively(source, polygons, {patches_wanted, {exponent, {}}, change, false}, reserve)),
+          refined(refine_adaptively(source, polygons, {patches_wanted, tolerance, change, false}, reserve)),
           patches(make_limit_patches(source, refined)) {}
 
     BicubicBase base(uint32_t quad) const {
@@ -239,6 +242,48 @@ TEST(AutomaticLevels, patches_beside_seams_have_the_limit_uvs_within_the_toleran
         EXPECT_LT(worst, tolerance) << exponent << ", " << adapted.refined.quad_count() << " quads";
         EXPECT_GT(worst, 0.1 * tolerance);
         EXPECT_LT(adapted.refined.quad_count(), 20000u);
+    }
+}
+
+TEST(DisplacementChange, is_bounded_by_blocks_only_where_that_is_enough) {
+    PyramidCache pyramids;
+    auto texels = test::make_constant(64, 64, {0, 0, 0});
+    texels->floats[4 * (20 * 64 + 20)] = 1; // in a block that the quad touches, away from the quad
+    texels->floats[4 * (24 * 64 + 25)] = 0.1f;
+    Displacement displacement = test::make_displacement(std::move(texels));
+    displacement.space = DisplacementSpace::object;
+    const DisplacementMap map = make_displacement_map(displacement, {}, pyramids);
+    const DisplacementChange change(map, false);
+    const auto v = [](float row) { return 1 - row / 64; };
+    const float left = 23.0f / 64, right = 27.0f / 64;
+    const std::array<Vec2f, 4> uvs = {{{left, v(27)}, {right, v(27)}, {right, v(23)}, {left, v(23)}}};
+    const Vec2<double> error{1e-3, 1e-3};
+    const double exact = change.find_change(uvs, error), bound = change.find_change(uvs, error, 1e9);
+    EXPECT_NEAR(exact, 0.1 * 2 * 64e-3, 1e-6);
+    EXPECT_NEAR(bound, 2 * 64e-3, 1e-6);
+    EXPECT_EQ(change.find_change(uvs, error, 0.5 * bound), exact);
+    EXPECT_EQ(change.find_change(uvs, error, 2 * bound), bound);
+}
+
+TEST(AutomaticLevels, quads_that_are_cut_beside_exact_ones_have_the_curves_of_their_sides) {
+    // Frames turn, so that faces with a small tolerance are cut; uvs are straight, so that others stay exact.
+    const Mesh mesh = make_torus(16);
+    PyramidCache pyramids;
+    Displacement displacement = test::make_displacement(test::make_constant(4, 4, {0, 0, 0.3f}));
+    displacement.space = DisplacementSpace::tangent;
+    const DisplacementMap map = make_displacement_map(displacement, {}, pyramids);
+    const DisplacementChange change(map, false);
+    std::mt19937 random(5);
+    for (int turn = 0; turn < 8; ++turn) {
+        BaseTolerance tolerance{0, std::vector<int8_t>(256, 4)};
+        for (int8_t& of_face : tolerance.of_faces)
+            if (random() % 16 == 0) of_face = -16;
+        const Adapted adapted(mesh, tolerance, BasePatches::bicubic, &change);
+        EXPECT_GT(adapted.refined.quad_count(), 256u);
+        for (uint32_t quad = 0; quad < adapted.refined.quad_count(); ++quad)
+            // The torus stays away from its middle, where the points of a missing curve would be.
+            for (const Vec3f& control : adapted.patches.controls[quad])
+                ASSERT_GT(length(control), 0.5f) << turn << ", quad " << quad;
     }
 }
 
