@@ -9,6 +9,7 @@
 #include "relief/inspect.h"
 #include "scene/face_uvs.h"
 #include "scene/uv_sets.h"
+#include "surface/mesh/degenerate_faces.h"
 
 namespace relief {
 
@@ -44,6 +45,20 @@ void find_face_mistakes(const MeshShape& shape, std::vector<Finding>& findings) 
                  "{} of {} faces are not quads: displaced, the whole mesh is refined once to quads; plain, "
                  "n-gons are cut into triangles",
                  shape.triangles + shape.others, shape.faces());
+}
+
+void find_degenerate_mistakes(const Mesh& mesh, std::vector<Finding>& findings) {
+    const DegenerateFaces faces = find_degenerate_faces(mesh);
+    if (faces.count == 0) return;
+    if (faces.count == mesh.face_sizes.size()) {
+        add_error(findings, "E-AREA",
+                  "no face has an area: nothing of the mesh can be seen; export it again");
+        return;
+    }
+    add_warning(
+        findings, "W-AREA",
+        "{} of {} faces have no area and are left out, the first is face {}; remove them from the mesh",
+        faces.count, mesh.face_sizes.size(), faces.first);
 }
 
 void find_edge_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
@@ -99,8 +114,8 @@ std::string describe_tangents(const Mesh& mesh) {
 }
 
 void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result) {
-    Box box;
-    for (const Vec3f& position : mesh.positions) box.extend(position);
+    Box box; // of the points that faces have
+    for (const uint32_t point : mesh.position_indices) box.extend(mesh.positions[point]);
     result.facts.insert(result.facts.end(),
                         {make_count("vertices", mesh.positions.size()),
                          {"faces",
@@ -263,6 +278,7 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
     }
     add_uv_sets(mesh, result);
     find_face_mistakes(shape, result.findings);
+    find_degenerate_mistakes(mesh, result.findings);
     find_edge_mistakes(shape, result.findings);
     return result;
 }

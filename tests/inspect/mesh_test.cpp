@@ -46,6 +46,25 @@ TEST(MeshInspection, a_strip_of_quads_has_no_findings) {
     EXPECT_EQ(get_fact(inspection, "tangents"), "made from uvs");
 }
 
+TEST(MeshInspection, bounds_are_those_of_points_that_faces_have) {
+    Mesh mesh = make_strip(2);
+    const std::string bounds = get_fact(inspect_mesh(mesh), "bounds");
+    mesh.positions.push_back({100, -100, 100});
+    EXPECT_EQ(get_fact(inspect_mesh(mesh), "bounds"), bounds);
+    EXPECT_EQ(bounds, "(0, 0, 0) to (2, 1, 0)");
+}
+
+TEST(MeshInspection, faces_without_area_are_named) {
+    Mesh mesh = make_strip(2);
+    EXPECT_FALSE(has_code(inspect_mesh(mesh), "W-AREA"));
+    mesh.position_indices[7] = mesh.position_indices[6] = mesh.position_indices[5];
+    EXPECT_HAS_PART(find_text(inspect_mesh(mesh), "W-AREA"), "1 of 2 faces have no area");
+    EXPECT_HAS_PART(find_text(inspect_mesh(mesh), "W-AREA"), "the first is face 1");
+    for (uint32_t& point : mesh.position_indices) point = 0;
+    EXPECT_HAS_PART(find_text(inspect_mesh(mesh), "E-AREA"), "no face has an area");
+    EXPECT_FALSE(has_code(inspect_mesh(mesh), "W-AREA"));
+}
+
 TEST(MeshInspection, uv_sets_are_told_where_there_are_several) {
     Mesh mesh = make_strip(2);
     for (const Fact& fact : inspect_mesh(mesh).facts) EXPECT_NE(fact.name, "uv_sets");
