@@ -29,15 +29,22 @@ void write_statistics(const std::filesystem::path& file, const RenderResult& res
     write_text_file(file, write_json(describe_statistics(result, settings), 2));
 }
 
+/// "64", "24 of 64" where a time limit ended the render, "16 to 64" where some pixels have more than others.
+std::string describe_samples(const RenderResult& result, const RenderSettings& settings) {
+    if (result.whole_samples == settings.image.spp) return std::to_string(settings.image.spp);
+    const uint64_t pixels = uint64_t(result.image.width) * uint64_t(result.image.height);
+    const bool is_even = result.statistics.camera_rays <= pixels * uint64_t(result.whole_samples);
+    return fmt::format("{} {} {}", result.whole_samples, is_even ? "of" : "to", settings.image.spp);
+}
+
 void print_summary(const RenderResult& result, const RenderSettings& settings) {
     const Statistics& s = result.statistics;
     const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
     fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
                s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
-    fmt::print(stderr, "{}x{} pixels, {}{} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n",
-               settings.image.width, settings.image.height,
-               result.whole_samples == settings.image.spp ? "" : fmt::format("{} to ", result.whole_samples),
-               settings.image.spp, rays, s.render_s, s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
+    fmt::print(stderr, "{}x{} pixels, {} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.image.width,
+               settings.image.height, describe_samples(result, settings), rays, s.render_s,
+               s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
     fmt::print(stderr, "read in {:.3f} s, prepared in {:.3f} s{}\n", s.load_s, s.prepare_s,
                s.denoise_s > 0 ? fmt::format(", denoised in {:.3f} s", s.denoise_s) : "");
     fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
@@ -89,7 +96,17 @@ void print_ends(const RenderOptions& options, const RenderSettings& settings, co
         fmt::print(stderr,
                    "relief: the time limit ended the render: each pixel has at least {} of {} samples\n",
                    result.whole_samples, settings.image.spp);
-    if (result.noise) print_noise(*result.noise);
+    if (result.is_out_of_time && result.statistics.prepare_s > settings.image.time_limit_s)
+        fmt::print(stderr,
+                   "hint: preparing the scene takes {:.1f} s, which the limit of {:g} s does not shorten\n",
+                   result.statistics.prepare_s, settings.image.time_limit_s);
+    if (!result.noise) return;
+    print_noise(*result.noise);
+    if (result.noise->reached_pixels < result.noise->pixels && result.is_complete && !result.is_out_of_time)
+        fmt::print(stderr,
+                   "hint: --spp is the most samples that a pixel gets, {} here: a larger one lets more "
+                   "pixels reach it\n",
+                   settings.image.spp);
 }
 
 /// Not after an interrupt, which asks for an end. Whatever happens to it, the picture is there to be written;

@@ -155,7 +155,8 @@ Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options, W
 /// Facts of the mesh, then those of the scene that a render would make of it, without duplicates.
 Inspection inspect_mesh_as_rendered(const InspectOptions& options, WorkProgress& progress) {
     const Scene scene = load_mesh_scene(options.file, options.scene);
-    Inspection inspection = inspect_mesh(scene.meshes.front());
+    const Displacement* map = scene.displacements.empty() ? nullptr : &scene.displacements.front();
+    Inspection inspection = inspect_mesh(scene.meshes.front(), map);
     progress.tell(kRead);
     Inspection rendered = inspect_as_scene(scene, options, progress);
     std::erase_if(rendered.facts, [&](const Fact& fact) {

@@ -322,16 +322,16 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
          {"--seed", "--edits", "--pixel", "--pixel-error", "--bottom-cache", "--surface", "--lod",
           "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
-    for (const char* name : {"--filter", "--dequantize", "--subdivision-level", "--autobump", "--no-dilate",
-                             "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
-                             "--color-space", "--skip-existing", "--tile", "--samples", "--progress"})
+    for (const char* name : {"--filter", "--dequantize", "--frame-all", "--autobump", "--no-dilate", "--type",
+                             "--frame", "--lengths", "--encoding", "--wrap", "--png-bits", "--color-space",
+                             "--skip-existing", "--tile", "--samples", "--progress"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 
 void complete_render_options(RenderOptions& o) {
     complete_engine_options(o.engine, o.settings);
     check_input(o.input, o.mesh.displacement_map);
-    if (!is_mesh_file(o.input) && !o.mesh_only.empty())
+    if (!is_mesh_file(o.input) && !o.mesh_only.empty() && std::filesystem::exists(o.input))
         throw Error(ErrorKind::usage,
                     {fmt::format("{} goes with a mesh, not with a scene file", o.mesh_only.front()),
                      o.input.string(),

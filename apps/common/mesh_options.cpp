@@ -1,6 +1,8 @@
 #include "common/mesh_options.h"
 
+#include <array>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -38,14 +40,15 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
     add("--vdm", "MAP", "displacement map; may hold <UDIM>",
         [&options](const std::string& text) { options.displacement_map = text; });
     add("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",
-        [&options](const std::string& text) { options.subdivision = text; });
+        [&options](const std::string& text) {
+            constexpr std::array<std::pair<std::string_view, bool>, 3> kSchemes = {
+                {{"catmark", true}, {"bilinear", true}, {"none", true}}};
+            parse_word("--subdivision", text, kSchemes);
+            options.subdivision = text;
+        });
     add("--subdivision-level", "auto|N",
         "patches per quad: 2^N x 2^N, or few and near enough (default: auto)",
-        [&options](const std::string& text) {
-            options.subdivision_level =
-                text == "auto" ? kAutoSubdivisionLevel
-                               : int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
-        });
+        [&options](const std::string& text) { options.subdivision_level = parse_subdivision_level(text); });
     add("--filter", "NAME", "of the map: cubic or bspline up close, mip from afar, none (default)",
         [&options](const std::string& text) { options.map.filter = text; });
     add_flag("--dequantize", "smooth the steps of 8 and 16-bit maps; filter cubic or bspline",

@@ -109,6 +109,15 @@ std::string suggest_size(const std::string& text, int64_t most) {
     }
 }
 
+int parse_fixed_level(const std::string& option, const std::string& text, int most) {
+    try {
+        return int(parse_integer(option, text, 0, most));
+    } catch (const Error&) {
+        refuse_value(option, text, fmt::format("'auto' or an integer from 0 to {}", most),
+                     "auto: fine enough for the size on screen");
+    }
+}
+
 } // namespace
 
 std::pair<int, int> parse_size(const std::string& option, const std::string& text, int64_t most) {
@@ -123,13 +132,12 @@ std::pair<int, int> parse_size(const std::string& option, const std::string& tex
 }
 
 int parse_level(const std::string& text) {
-    if (text == "auto") return kAutoLevel;
-    try {
-        return int(parse_integer("--level", text, 0, kMaxLevel));
-    } catch (const Error&) {
-        refuse_value("--level", text, fmt::format("'auto' or an integer from 0 to {}", kMaxLevel),
-                     "auto: fine enough for the size on screen");
-    }
+    return text == "auto" ? kAutoLevel : parse_fixed_level("--level", text, kMaxLevel);
+}
+
+int parse_subdivision_level(const std::string& text) {
+    return text == "auto" ? kAutoSubdivisionLevel
+                          : parse_fixed_level("--subdivision-level", text, kMaxSubdivisionLevel);
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {

@@ -39,6 +39,9 @@ std::vector<int64_t> parse_integers(const std::string& option, const std::string
 /// A value of --level: auto, or cells 2^N a side.
 int parse_level(const std::string& text);
 
+/// A value of --subdivision-level: auto, or 2^N x 2^N patches a quad.
+int parse_subdivision_level(const std::string& text);
+
 /// Parts of "a,b,c"; an empty text has no parts.
 std::vector<std::string> split(const std::string& text, char separator);
 

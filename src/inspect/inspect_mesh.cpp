@@ -29,7 +29,7 @@ void find_faults(const MeshFaults& faults, std::vector<Finding>& findings) {
         add_error(findings, "E-NAN", "uv {} is not finite; unwrap the mesh again", *faults.bad_uv);
 }
 
-void find_face_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
+void find_face_mistakes(const Mesh& mesh, const MeshShape& shape, std::vector<Finding>& findings) {
     if (shape.triangles > shape.faces() / 2)
         add_warning(findings, "W-TRI",
                     "{} of {} faces are triangles: probably a triangulated export, whose diagonals a "
@@ -40,7 +40,10 @@ void find_face_mistakes(const MeshShape& shape, std::vector<Finding>& findings) 
                     "{} of {} faces have more than four corners: displaced, they are split into quads, which "
                     "a baker may have split otherwise; make them quads",
                     shape.others, shape.faces());
-    if (shape.triangles + shape.others > 0)
+    const Subdivision& subdivision = mesh.subdivision;
+    const bool is_by_view =
+        subdivision.scheme == SubdivisionScheme::catmark && subdivision.level == kAutoSubdivisionLevel;
+    if (shape.triangles + shape.others > 0 && !is_by_view)
         add_note(findings, "I-REFINE",
                  "{} of {} faces are not quads: displaced, the whole mesh is refined once to quads; plain, "
                  "n-gons are cut into triangles",
@@ -277,7 +280,7 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
         find_uv_mistakes(uvs, displacement, result.findings);
     }
     add_uv_sets(mesh, result);
-    find_face_mistakes(shape, result.findings);
+    find_face_mistakes(mesh, shape, result.findings);
     find_degenerate_mistakes(mesh, result.findings);
     find_edge_mistakes(shape, result.findings);
     return result;

@@ -89,7 +89,7 @@ TEST_F(Checkpoint, says_that_a_time_limit_ended_a_render) {
     EXPECT_EQ(cut.exit_code, 0) << cut.errors;
     EXPECT_NE(cut.errors.find("the time limit ended the render: each pixel has at least "), std::string::npos)
         << cut.errors;
-    EXPECT_NE(cut.errors.find(" to 4096 samples, "), std::string::npos) << cut.errors;
+    EXPECT_NE(cut.errors.find(" of 4096 samples, "), std::string::npos) << cut.errors;
     EXPECT_EQ(run({"render", "plane.obj", "--size", "32x32", "--bounces", "1", "--spp", "2", "--time-limit",
                    "600", "-o", "b.exr"})
                   .errors.find("the time limit ended"),
@@ -104,6 +104,8 @@ TEST_F(Checkpoint, a_limit_shorter_than_the_preparation_leaves_one_sample) {
     EXPECT_EQ(statistics["image"]["whole_samples"], 1);
     EXPECT_EQ(statistics["rays"]["camera"], 64 * 48) << "reading and preparing took the time";
     EXPECT_NE(cut.errors.find("each pixel has at least 1 of 64 samples"), std::string::npos) << cut.errors;
+    EXPECT_NE(cut.errors.find("which the limit of 0.001 s does not shorten"), std::string::npos)
+        << cut.errors;
 }
 
 TEST_F(Checkpoint, says_which_noise_was_reached) {
@@ -114,6 +116,9 @@ TEST_F(Checkpoint, says_which_noise_was_reached) {
         render({"--spp", "16", "--noise", "0.000001", "-o", "a.exr", "--stats", "s.json"});
     EXPECT_NE(few.errors.find("of 6144 pixels ("), std::string::npos) << few.errors;
     EXPECT_NE(few.errors.find("reached 1e-06; half of the other "), std::string::npos) << few.errors;
+    EXPECT_NE(few.errors.find("hint: --spp is the most samples that a pixel gets, 16 here"),
+              std::string::npos)
+        << few.errors;
     nlohmann::json noise = nlohmann::json::parse(read("s.json"))["noise"];
     EXPECT_EQ(noise["pixels"], 6144);
     EXPECT_LT(noise["reached_pixels"], 6144);
@@ -121,6 +126,7 @@ TEST_F(Checkpoint, says_which_noise_was_reached) {
     EXPECT_GT(noise["median_of_others"], noise["asked"]);
     const CommandResult all = render({"--spp", "16", "--noise", "1", "-o", "a.exr", "--stats", "s.json"});
     EXPECT_NE(all.errors.find("noise: all 6144 pixels reached 1\n"), std::string::npos) << all.errors;
+    EXPECT_EQ(all.errors.find("hint: --spp"), std::string::npos) << all.errors;
     EXPECT_EQ(nlohmann::json::parse(read("s.json"))["noise"]["reached_pixels"], 6144);
     EXPECT_EQ(render({"--spp", "16", "--noise", "1", "-q", "-o", "a.exr"}).errors, "");
 }

@@ -250,7 +250,17 @@ TEST_F(Usage, a_subdivision_level_needs_a_scheme) {
                    "from 0 to 8");
 }
 
+TEST_F(Usage, subdivision_options_list_what_they_take) {
+    expect_refused({"render", "plane.obj", "--subdivision", "catmul", "-o", "a.exr"},
+                   "hint: did you mean 'catmark'?");
+    expect_refused(
+        {"render", "plane.obj", "--subdivision", "catmark", "--subdivision-level", "99", "-o", "a.exr"},
+        "'auto' or an integer from 0 to 8");
+}
+
 TEST_F(Usage, a_missing_file_is_bad_input_with_its_name) {
+    expect_refused({"render", "plane.obj.bak", "--subdivision", "catmark", "-o", "a.exr"}, "plane.obj.bak",
+                   3);
     expect_refused({"render", "nothing.obj", "--size", "8x8"}, "nothing.obj", 3);
     expect_refused({"inspect", "nothing.exr"}, "nothing.exr", 3);
     expect_refused({"compare", "nothing.exr", "bump.exr"}, "nothing.exr", 3);

@@ -65,6 +65,16 @@ TEST(MeshInspection, faces_without_area_are_named) {
     EXPECT_FALSE(has_code(inspect_mesh(mesh), "W-AREA"));
 }
 
+TEST(MeshInspection, automatic_levels_leave_the_quads_of_a_mesh_whole) {
+    Mesh mesh = make_strip(2);
+    mesh.face_sizes = {5, 3}; // the corners do not matter
+    EXPECT_TRUE(has_code(inspect_mesh(mesh), "I-REFINE"));
+    mesh.subdivision.scheme = SubdivisionScheme::catmark, mesh.subdivision.level = 1;
+    EXPECT_TRUE(has_code(inspect_mesh(mesh), "I-REFINE"));
+    mesh.subdivision.level = kAutoSubdivisionLevel;
+    EXPECT_FALSE(has_code(inspect_mesh(mesh), "I-REFINE"));
+}
+
 TEST(MeshInspection, uv_sets_are_told_where_there_are_several) {
     Mesh mesh = make_strip(2);
     for (const Fact& fact : inspect_mesh(mesh).facts) EXPECT_NE(fact.name, "uv_sets");

@@ -86,7 +86,7 @@ TEST(LimitFace, uvs_beside_seams_are_those_of_a_finer_level) {
     const SubdivisionMesh source(polygons, mesh.subdivision);
     mesh.subdivision.level = 3;
     SubdivisionMesh finer(polygons, mesh.subdivision);
-    const RefinedMesh refined = finer.refine();
+    const RefinedMesh refined = finer.refine("mesh");
     ASSERT_EQ(refined.uvs.size(), refined.points.size());
     double most_bent = 0;
     for (uint32_t quad = 0; quad < refined.quad_count(); ++quad) {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "surface/mesh/irregular_points.h"
+#include "surface/mesh/uv_outlines.h"
 #include "surface/patch/patch_samples.h"
 #include "surface/smooth_shapes.h"
 
@@ -227,13 +228,17 @@ TEST(SmoothSurface, refuses_more_patches_than_can_be) {
     Mesh mesh = test::make_random_grid(60, 60, 0, 1);
     mesh.subdivision.scheme = SubdivisionScheme::catmark;
     mesh.subdivision.level = kMaxSubdivisionLevel;
-    try {
-        make_surface(mesh, nullptr, {});
-        FAIL() << "235929600 patches were made";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::out_of_memory);
-        EXPECT_NE(std::string(error.what()).find("235929600 patches"), std::string::npos) << error.what();
-    }
+    const auto expect_refusal = [](const auto& make) {
+        try {
+            make();
+            ADD_FAILURE() << "235929600 patches were made";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::out_of_memory);
+            EXPECT_NE(std::string(error.what()).find("235929600 patches"), std::string::npos) << error.what();
+        }
+    };
+    expect_refusal([&] { make_surface(mesh, nullptr, {}); });
+    expect_refusal([&] { make_uv_outlines(mesh); });
 }
 
 } // namespace

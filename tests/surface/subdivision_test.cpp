@@ -57,7 +57,7 @@ struct Subdivided {
         return true;
     }
     static RefinedMesh make_refined(SubdivisionMesh& source) {
-        RefinedMesh refined = source.refine();
+        RefinedMesh refined = source.refine("mesh");
         cut_at_irregular_points(refined, kIsolationDepth);
         return refined;
     }

@@ -4,12 +4,9 @@
 #include <numeric>
 #include <optional>
 
-#include <fmt/format.h>
-
 #include "surface/mesh/adaptive_cage.h"
 #include "surface/mesh/irregular_points.h"
 #include "surface/mesh/limit_patches.h"
-#include "surface/mesh/patch_budget.h"
 #include "surface/mesh/subdivision_mesh.h"
 
 namespace relief {
@@ -117,9 +114,7 @@ Polygons make_quads(const RefinedMesh& refined, const Polygons& source) {
 
 RefinedMesh refine_to_level(SubdivisionMesh& mesh, const Polygons& polygons, const Subdivision& subdivision,
                             const BaseNeeds& needs) {
-    check_patch_count(mesh.quad_count(), polygons.where,
-                      fmt::format("subdivision to level {}", mesh.level()));
-    RefinedMesh refined = mesh.refine();
+    RefinedMesh refined = mesh.refine(polygons.where);
     if (needs.patches == BasePatches::bicubic && subdivision.scheme == SubdivisionScheme::catmark)
         cut_at_irregular_points(refined, kIsolationDepth);
     return refined;

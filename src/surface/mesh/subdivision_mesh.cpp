@@ -12,6 +12,7 @@
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include "relief/error.h"
+#include "surface/mesh/patch_budget.h"
 #include "surface/mesh/subdivision_topology.h"
 
 namespace relief {
@@ -379,8 +380,9 @@ SubdivisionMesh::Implementation::find_limit_normals(const std::vector<bool>& is_
     return normals;
 }
 
-RefinedMesh SubdivisionMesh::refine() {
+RefinedMesh SubdivisionMesh::refine(const std::string& where) {
     Implementation& self = *implementation_;
+    check_patch_count(quad_count(), where, fmt::format("subdivision to level {}", self.level));
     osd::Far::TopologyRefiner::UniformOptions options(self.level);
     options.fullTopologyInLastLevel = true;
     self.refiner->RefineUniform(options);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "math/vec_double.h"
@@ -55,7 +56,9 @@ class SubdivisionMesh {
     int level() const;
     /// Patches at that level.
     uint64_t quad_count() const;
-    RefinedMesh refine();
+    /// Throws out_of_memory if the patches are too many, or need more memory than there is; `where` names file
+    /// and mesh.
+    RefinedMesh refine(const std::string& where);
     /// Points after `level` steps, not on the limit; after refine().
     std::vector<Vec3f> compute_points() const;
     /// The faces with limit uvs and what is known about their points. For a mesh that is not refined.

@@ -52,7 +52,8 @@ Vec2f evaluate_side(const LimitFace& limit, uint32_t size, uint32_t k, double s)
 UvOutlines make_patch_outlines(const Mesh& mesh) {
     UvOutlines outlines;
     const Polygons polygons = make_polygons(mesh, Welding::equal_points);
-    for (const std::array<Vec2f, 4>& uvs : SubdivisionMesh(polygons, mesh.subdivision).refine().uvs) {
+    const RefinedMesh refined = SubdivisionMesh(polygons, mesh.subdivision).refine(polygons.where);
+    for (const std::array<Vec2f, 4>& uvs : refined.uvs) {
         outlines.uvs.insert(outlines.uvs.end(), uvs.begin(), uvs.end());
         outlines.end_face();
     }
