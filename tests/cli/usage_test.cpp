@@ -251,7 +251,7 @@ TEST_F(Usage, a_subdivision_level_needs_a_scheme) {
 }
 
 TEST_F(Usage, subdivision_options_list_what_they_take) {
-    expect_refused({"render", "plane.obj", "--subdivision", "catmul", "-o", "a.exr"},
+    expect_refused({"render", "plane.obj", "--subdivision", "catmarc", "-o", "a.exr"},
                    "hint: did you mean 'catmark'?");
     expect_refused(
         {"render", "plane.obj", "--subdivision", "catmark", "--subdivision-level", "99", "-o", "a.exr"},
