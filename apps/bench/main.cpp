@@ -10,6 +10,7 @@
 #include "bench/charts.h"
 #include "bench/suites.h"
 #include "common/command_line.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "relief/io.h"
 
@@ -19,9 +20,9 @@ namespace {
 
 void print_goals(const Value& goals) {
     for (const auto& goal : goals)
-        fmt::print("{}  {}: {:.4g} {}, goal {:.4g}\n", goal["met"].get<bool>() ? "met    " : "not met",
-                   goal["name"].get<std::string>(), goal["reached"].get<double>(),
-                   goal["unit"].get<std::string>(), goal["goal"].get<double>());
+        print_output("{}  {}: {:.4g} {}, goal {:.4g}\n", goal["met"].get<bool>() ? "met    " : "not met",
+                     goal["name"].get<std::string>(), goal["reached"].get<double>(),
+                     goal["unit"].get<std::string>(), goal["goal"].get<double>());
 }
 
 int run_bench(const BenchOptions& options) {
@@ -37,13 +38,13 @@ int run_bench(const BenchOptions& options) {
     progress.end_line();
     for (const ReportFile& file : outcome.files) {
         write_text_file(folder / file.name, file.text);
-        fmt::print("wrote {}\n", (folder / file.name).string());
+        print_output("wrote {}\n", (folder / file.name).string());
     }
     report("drawing charts");
     const DrawnCharts charts = draw_charts(folder / outcome.files.front().name);
     progress.end_line();
-    for (const std::string& line : charts.lines) fmt::print("{}\n", line);
-    if (!charts.failure.empty()) fmt::print(stderr, "relief bench: {}\n", charts.failure);
+    for (const std::string& line : charts.lines) print_output("{}\n", line);
+    if (!charts.failure.empty()) print_error("relief bench: {}\n", charts.failure);
     if (!options.is_quick) print_goals(outcome.result["goals"]); // tiny pictures reach none
     return cli::kExitDone;
 }
@@ -66,5 +67,5 @@ int parse_and_run(int argument_count, const char* const* arguments) {
 
 int main(int argument_count, char** arguments) {
     if (const auto read = relief::run_mesh_reader(argument_count, arguments)) return *read;
-    return relief::cli::run_guarded([&] { return relief::bench::parse_and_run(argument_count, arguments); });
+    return relief::cli::run_program([&] { return relief::bench::parse_and_run(argument_count, arguments); });
 }

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/values.h"
 #include "relief/io.h"
 
@@ -41,8 +42,8 @@ void check_checkpoint(const CheckpointOptions& options, const std::filesystem::p
     if (!options.is_on()) return;
     check_text_writable(name_film(output));
     if (options.resumed.empty() && std::filesystem::exists(name_film(output)))
-        fmt::print(stderr, "relief: warning: {} is replaced; --resume {} goes on from it\n",
-                   name_film(output).string(), output.string());
+        print_error("relief: warning: {} is replaced; --resume {} goes on from it\n",
+                    name_film(output).string(), output.string());
     const std::filesystem::path film = name_film(options.resumed);
     if (!options.resumed.empty() && !std::filesystem::is_regular_file(film))
         throw Error(ErrorKind::bad_input,
@@ -68,7 +69,7 @@ Checkpoints FilmKeeper::checkpoints() {
             has_failed_ = false;
         } catch (const std::exception& error) {
             has_failed_ = true;
-            fmt::print(stderr, "relief: warning: the samples so far could not be kept: {}\n", error.what());
+            print_error("relief: warning: the samples so far could not be kept: {}\n", error.what());
         }
     };
     return checkpoints;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/inputs.h"
 #include "common/map_options.h"
@@ -53,8 +54,7 @@ void print_warnings(const ConvertOptions& options, const std::vector<std::string
                     WorkProgress* progress = nullptr) {
     if (options.progress.is_quiet || warnings.empty()) return;
     if (progress) progress->end_line();
-    for (const std::string& warning : warnings)
-        fmt::print(stderr, "relief: warning: {}\n", name_options(warning));
+    for (const std::string& warning : warnings) print_error("relief: warning: {}\n", name_options(warning));
 }
 
 std::string format_factors(const Vec3f& v) {
@@ -145,7 +145,7 @@ int convert_map_file(const ConvertOptions& options) {
                     progress.part(kBeforeConversion, kConverted));
     print_warnings(options, warnings, &progress);
     write_map(converted, options.output, samples, progress.part(kConverted, 1));
-    fmt::print("wrote {}: {}\n", options.output, describe(converted));
+    print_output("wrote {}: {}\n", options.output, describe(converted));
     return kExitDone;
 }
 
@@ -178,7 +178,7 @@ int convert_surface(const ConvertOptions& options) {
         progress.tell(kBeforeConversion);
         print_warnings(options, warnings, &progress);
         write_mesh(mesh, options.output, progress.part(kBeforeConversion, 1));
-        fmt::print("wrote {}\n", options.output);
+        print_output("wrote {}\n", options.output);
         return kExitDone;
     }
     if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() || options.subdivision))
@@ -191,8 +191,8 @@ int convert_surface(const ConvertOptions& options) {
     const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel),
                                           progress.part(kBeforeConversion, kConverted));
     write_mesh(mesh, options.output, progress.part(kConverted, 1));
-    fmt::print("wrote {}: {} vertices, {} faces\n", options.output, mesh.positions.size(),
-               mesh.face_sizes.size());
+    print_output("wrote {}: {} vertices, {} faces\n", options.output, mesh.positions.size(),
+                 mesh.face_sizes.size());
     return kExitDone;
 }
 

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/report.h"
 #include "interrupt.h"
@@ -40,15 +41,15 @@ std::string describe_samples(const RenderResult& result, const RenderSettings& s
 void print_summary(const RenderResult& result, const RenderSettings& settings) {
     const Statistics& s = result.statistics;
     const uint64_t rays = s.camera_rays + s.shadow_rays + s.bounce_rays;
-    fmt::print(stderr, "{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches,
-               s.triangles, s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
-    fmt::print(stderr, "{}x{} pixels, {} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.image.width,
-               settings.image.height, describe_samples(result, settings), rays, s.render_s,
-               s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
-    fmt::print(stderr, "read in {:.3f} s, prepared in {:.3f} s{}\n", s.load_s, s.prepare_s,
-               s.denoise_s > 0 ? fmt::format(", denoised in {:.3f} s", s.denoise_s) : "");
-    fmt::print(stderr, "geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
-               s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
+    print_error("{} patches, {} triangles, {} instances on {} ({}, {} threads)\n", s.patches, s.triangles,
+                s.instances, s.engine, s.engine == "cpu" ? s.isa : s.device, s.threads);
+    print_error("{}x{} pixels, {} samples, {} rays in {:.2f} s, {:.2f} Mray/s\n", settings.image.width,
+                settings.image.height, describe_samples(result, settings), rays, s.render_s,
+                s.render_s > 0 ? 1e-6 * double(rays) / s.render_s : 0);
+    print_error("read in {:.3f} s, prepared in {:.3f} s{}\n", s.load_s, s.prepare_s,
+                s.denoise_s > 0 ? fmt::format(", denoised in {:.3f} s", s.denoise_s) : "");
+    print_error("geometry {} B, structures {} B, maps {} B, patch trees {} B\n", s.geometry_bytes,
+                s.structures_bytes, s.displacement_bytes, s.bottom_cache_bytes);
 }
 
 int get_exit_code(const RenderResult& result, const Saved& saved) {
@@ -78,35 +79,32 @@ class DenoisingNotice {
 void print_noise(const NoiseReport& noise) {
     const auto asked = float(noise.asked); // as it was written
     if (noise.reached_pixels == noise.pixels)
-        return fmt::print(stderr, "relief: noise: all {} pixels reached {}\n", noise.pixels, asked);
+        return print_error("relief: noise: all {} pixels reached {}\n", noise.pixels, asked);
     const uint64_t others = noise.pixels - noise.reached_pixels;
-    fmt::print(stderr,
-               "relief: noise: {} of {} pixels ({:.1f} %) reached {}; half of the other {} are below {:.3g}, "
-               "the worst are at {:.3g}\n",
-               noise.reached_pixels, noise.pixels,
-               std::floor(1000.0 * double(noise.reached_pixels) / double(noise.pixels)) / 10, asked, others,
-               noise.median, noise.most);
+    print_error(
+        "relief: noise: {} of {} pixels ({:.1f} %) reached {}; half of the other {} are below {:.3g}, "
+        "the worst are at {:.3g}\n",
+        noise.reached_pixels, noise.pixels,
+        std::floor(1000.0 * double(noise.reached_pixels) / double(noise.pixels)) / 10, asked, others,
+        noise.median, noise.most);
 }
 
 /// Prints the reason why the render ended, and how good the picture is.
 void print_ends(const RenderOptions& options, const RenderSettings& settings, const RenderResult& result) {
-    if (!result.is_complete) fmt::print(stderr, "relief: interrupted; the picture holds what was done\n");
+    if (!result.is_complete) print_error("relief: interrupted; the picture holds what was done\n");
     if (options.progress.is_quiet) return;
     if (result.is_out_of_time)
-        fmt::print(stderr,
-                   "relief: the time limit ended the render: each pixel has at least {} of {} samples\n",
-                   result.whole_samples, settings.image.spp);
+        print_error("relief: the time limit ended the render: each pixel has at least {} of {} samples\n",
+                    result.whole_samples, settings.image.spp);
     if (result.is_out_of_time && result.statistics.prepare_s > settings.image.time_limit_s)
-        fmt::print(stderr,
-                   "hint: preparing the scene takes {:.1f} s, which the limit of {:g} s does not shorten\n",
-                   result.statistics.prepare_s, settings.image.time_limit_s);
+        print_error("hint: preparing the scene takes {:.1f} s, which the limit of {:g} s does not shorten\n",
+                    result.statistics.prepare_s, settings.image.time_limit_s);
     if (!result.noise) return;
     print_noise(*result.noise);
     if (result.noise->reached_pixels < result.noise->pixels && result.is_complete && !result.is_out_of_time)
-        fmt::print(stderr,
-                   "hint: --spp is the most samples that a pixel gets, {} here: a larger one lets more "
-                   "pixels reach it\n",
-                   settings.image.spp);
+        print_error("hint: --spp is the most samples that a pixel gets, {} here: a larger one lets more "
+                    "pixels reach it\n",
+                    settings.image.spp);
 }
 
 /// Not after an interrupt, which asks for an end. Whatever happens to it, the picture is there to be written;
@@ -118,11 +116,11 @@ int denoise_picture(const RenderOptions& options, RenderResult& result) {
     DenoisingNotice notice(options.progress);
     try {
         if (!options.denoiser->denoise(result.image, is_interrupted)) {
-            fmt::print(stderr, "relief: interrupted; the picture is not denoised\n");
+            print_error("relief: interrupted; the picture is not denoised\n");
             exit_code = kExitSignalBase + get_interrupt();
         }
     } catch (const std::exception& error) {
-        fmt::print(stderr, "relief: error: the picture is not denoised: {}\n", error.what());
+        print_error("relief: error: the picture is not denoised: {}\n", error.what());
         exit_code = int(ErrorKind::failed);
     }
     result.statistics.denoise_s = get_seconds() - start;
@@ -152,7 +150,7 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
                    ToldWarnings& told) {
     Statistics& statistics = result.statistics;
     if (result.whole_samples == 0) {
-        fmt::print(stderr, "relief: interrupted before every pixel had a sample; no picture was written\n");
+        print_error("relief: interrupted before every pixel had a sample; no picture was written\n");
         if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
         return get_exit_code(result, {});
     }
@@ -167,8 +165,8 @@ int finish_picture(const RenderOptions& options, const RenderSettings& settings,
     if (!options.progress.is_quiet)
         print_warnings(told.take_new(statistics.warnings), is_mesh_file(options.input));
     if (options.is_verbose) print_summary(result, settings);
-    fmt::print("wrote {}\n", saved.file.string());
-    std::fflush(stdout); // the sender of edits waits for it
+    print_output("wrote {}\n", saved.file.string());
+    flush_output(); // the sender of edits waits for it
     if (!options.statistics_file.empty()) write_statistics(options.statistics_file, result, settings);
     print_ends(options, settings, result);
     const int exit_code = get_exit_code(result, saved);

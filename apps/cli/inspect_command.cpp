@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/inputs.h"
 #include "common/map_options.h"
@@ -92,7 +93,7 @@ void write_check_picture(const Scene& scene, const RenderSettings& settings, con
     keep_files(list_files(scene), file);
     write_image(make_check_picture(scene, settings, progress.part(get_picture_start(options), 1)), file);
     // On stderr: stdout is machine readable.
-    fmt::print(stderr, "wrote {}\n", file);
+    print_error("wrote {}\n", file);
 }
 
 Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progress) {
@@ -206,10 +207,10 @@ Inspection inspect_or_report(const InspectOptions& options) {
 void print_inspection(const Inspection& inspection) {
     size_t width = 0;
     for (const Fact& fact : inspection.facts) width = std::max(width, fact.name.size());
-    for (const Fact& fact : inspection.facts) fmt::print("{:<{}}  {}\n", fact.name, width, fact.value);
+    for (const Fact& fact : inspection.facts) print_output("{:<{}}  {}\n", fact.name, width, fact.value);
     for (const Finding& finding : inspection.findings)
-        fmt::print("{}: {}: {}\n", get_severity_name(finding.severity), finding.code,
-                   name_options(finding.text));
+        print_output("{}: {}: {}\n", get_severity_name(finding.severity), finding.code,
+                     name_options(finding.text));
 }
 
 /// Whole numbers without a fraction; nothing where a number is not finite, which JSON cannot say.
@@ -233,7 +234,7 @@ void print_inspection_json(const Inspection& inspection, const std::string& file
         json["findings"].push_back({{"severity", get_severity_name(finding.severity)},
                                     {"code", finding.code},
                                     {"text", name_options(finding.text)}});
-    fmt::print("{}", write_json(json, 2));
+    print_output("{}", write_json(json, 2));
 }
 
 void check_options(const InspectOptions& options) {

@@ -36,7 +36,7 @@ int main(int argument_count, char** arguments) {
     using namespace relief::cli;
     // The command starts itself to read files that a third-party library parses.
     if (const auto read = relief::run_mesh_reader(argument_count, arguments)) return *read;
-    return run_guarded([&] {
+    return run_program([&] {
         CLI::App app("Relief: ray tracing of vector-displaced surfaces", "relief");
         prepare_parsing(app);
         const Verbs verbs = make_verbs(app);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -41,7 +42,7 @@ Saved save_with_fallback(const Image& image, const fs::path& file,
         write(image, file);
         return {file, false};
     } catch (const std::exception& failure) {
-        fmt::print(stderr, "relief: error: the picture could not be written: {}\n", failure.what());
+        print_error("relief: error: the picture could not be written: {}\n", failure.what());
         for (const fs::path& folder : fallback_folders) {
             const fs::path other = find_free_name(folder, file.filename());
             try {
@@ -49,7 +50,7 @@ Saved save_with_fallback(const Image& image, const fs::path& file,
             } catch (const std::exception&) {
                 continue;
             }
-            fmt::print(stderr, "relief: the picture is not lost, it was written to {}\n", other.string());
+            print_error("relief: the picture is not lost, it was written to {}\n", other.string());
             return {other, true};
         }
         throw;

@@ -12,6 +12,7 @@
 
 #include "aim_options.h"
 #include "commands.h"
+#include "common/console.h"
 #include "common/denoiser_search.h"
 #include "common/exit_codes.h"
 #include "common/inputs.h"
@@ -47,11 +48,11 @@ int run_compare(const CompareOptions& options) {
         const Value json = {
             {"pixels", d.pixels}, {"one_only", d.one_only}, {"over_threshold", d.over_threshold},
             {"max", d.max},       {"mean", d.mean},         {"rms", d.rms}};
-        fmt::print("{}\n", write_json(json));
+        print_output("{}\n", write_json(json));
     } else {
-        fmt::print("pixels          {}\nin one only     {}\nover threshold  {}\nmax             {:.6g}\n"
-                   "mean            {:.6g}\nrms             {:.6g}\n",
-                   d.pixels, d.one_only, d.over_threshold, d.max, d.mean, d.rms);
+        print_output("pixels          {}\nin one only     {}\nover threshold  {}\nmax             {:.6g}\n"
+                     "mean            {:.6g}\nrms             {:.6g}\n",
+                     d.pixels, d.one_only, d.over_threshold, d.max, d.mean, d.rms);
     }
     return d.over_threshold > 0 ? kExitDifferent : kExitDone;
 }
@@ -118,12 +119,12 @@ int run_merge(const MergeOptions& options) {
                 ErrorKind::bad_input,
                 {message, options.output, "add the missing parts, or --allow-gaps to join what is there"});
         refuse_black_pixels(gaps, merged, options.output);
-        fmt::print(stderr, "relief: warning: {}\n", message);
+        print_error("relief: warning: {}\n", message);
     }
     if (denoiser) denoiser->denoise(merged);
     add_display_entries(options.display, merged);
     write_image(merged, options.output);
-    fmt::print("wrote {}\n", options.output);
+    print_output("wrote {}\n", options.output);
     return kExitDone;
 }
 

@@ -14,6 +14,7 @@
 
 #include "base/parallel.h"
 #include "commands.h"
+#include "common/console.h"
 #include "common/denoiser_search.h"
 #include "common/exit_codes.h"
 #include "common/explain_pixel.h"
@@ -48,22 +49,20 @@ void tell_of_earlier_samples(const RenderResult& result, const ImageSettings& im
     const std::string& range = result.image.metadata.at("relief:samples"); // "A:B"
     const int most = std::stoi(range.substr(range.find(':') + 1)) - image.first_sample;
     if (result.statistics.camera_rays == 0 && image.noise > 0)
-        fmt::print(stderr,
-                   "relief: no samples are added: pixels have {} already, or as little noise as asked for\n",
-                   image.spp);
+        print_error("relief: no samples are added: pixels have {} already, or as little noise as asked for\n",
+                    image.spp);
     else if (result.statistics.camera_rays == 0)
-        fmt::print(stderr, "relief: the picture had {} samples already: --spp {} adds none\n",
-                   result.whole_samples, image.spp);
+        print_error("relief: the picture had {} samples already: --spp {} adds none\n", result.whole_samples,
+                    image.spp);
     if (image.noise > 0 && most > image.spp)
-        fmt::print(stderr,
-                   "relief: noisy pixels keep the up to {} samples that they had, more than --spp {}\n", most,
-                   image.spp);
+        print_error("relief: noisy pixels keep the up to {} samples that they had, more than --spp {}\n",
+                    most, image.spp);
     const bool is_uneven = image.noise == 0 && image.time_limit_s == 0 && most > result.whole_samples;
     if (is_uneven)
-        fmt::print(stderr,
-                   "relief: pixels of the unfinished pass keep the {} samples that they had: --spp {} brings "
-                   "all others there\n",
-                   most, most);
+        print_error(
+            "relief: pixels of the unfinished pass keep the {} samples that they had: --spp {} brings "
+            "all others there\n",
+            most, most);
 }
 
 /// The scene file of a scene that may move, and the frame that it was loaded at; null: a still one.
@@ -99,10 +98,10 @@ void save_aimed_scene(const RenderOptions& options, const RenderSettings& settin
     scene.picture = {image.width, image.height, image.spp, image.bounces, image.seed, scene.picture.fps};
     const std::vector<std::string> words = list_picture_options(options.aim);
     save_scene_copy(scene, options.input, options.mesh, options.aim.saved_scene, words);
-    fmt::print("wrote {}{}\n", options.aim.saved_scene.string(),
-               words.empty() ? std::string()
-                             : fmt::format("; a scene does not hold {}: add that when you render it",
-                                           fmt::join(words, " ")));
+    print_output("wrote {}{}\n", options.aim.saved_scene.string(),
+                 words.empty() ? std::string()
+                               : fmt::format("; a scene does not hold {}: add that when you render it",
+                                             fmt::join(words, " ")));
 }
 
 int render_scene(const RenderOptions& options, Scene scene, const Source& source, double start) {
@@ -113,7 +112,7 @@ int render_scene(const RenderOptions& options, Scene scene, const Source& source
     if (!options.edits.empty()) return render_edits(options, settings, std::move(scene), waiting);
     if (options.aim.turntable > 0) return render_turns(options, settings, std::move(scene), waiting);
     if (!options.pixel) return render_picture(options, settings, std::move(scene), source, waiting);
-    fmt::print("{}", explain_pixel(scene, settings, options.pixel->first, options.pixel->second).text);
+    print_output("{}", explain_pixel(scene, settings, options.pixel->first, options.pixel->second).text);
     if (!options.progress.is_quiet) print_warnings(scene.warnings, is_mesh_file(options.input));
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "aim_options.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/inputs.h"
 #include "common/report.h"
@@ -96,7 +97,7 @@ class FrameLoop {
         if (!options_.skips_existing || !is_there(options_, series_.settings(), output, view.scene_hash))
             return series_.show(view, frame, output, step, waiting);
         if (has_loaded_) series_.let_go(); // the next frame cannot be told by how it differs from this one
-        fmt::print("kept {}\n", output.string());
+        print_output("kept {}\n", output.string());
         poll_interrupts();
         return get_interrupt() != 0 ? kExitSignalBase + get_interrupt() : int(kExitDone);
     }

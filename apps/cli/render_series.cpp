@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "aim_options.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/inputs.h"
 #include "edit_stream.h"
@@ -27,7 +28,7 @@ Camera turn_to(const RenderOptions& options, const Camera& camera, int turn) {
 }
 
 void print_edit(const EditReport& report) {
-    fmt::print(stderr, "edit: {} patches in {:.4f} s\n", report.patches, report.seconds);
+    print_error("edit: {} patches in {:.4f} s\n", report.patches, report.seconds);
 }
 
 /// Checks all lines of a file before the first render. Texels are read again when needed, because all of them
@@ -94,7 +95,7 @@ int render_edits(const RenderOptions& options, const RenderSettings& given, Scen
     while (exit_code == kExitDone) {
         await_input();
         if (get_interrupt() != 0) { // it came with the last picture
-            fmt::print(stderr, "relief: interrupted while it waited for edits\n");
+            print_error("relief: interrupted while it waited for edits\n");
             return kExitSignalBase + get_interrupt();
         }
         const std::optional<EditLine> line = edits.next();

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/option_names.h"
 #include "interrupt.h"
 #include "relief/inspect.h"
@@ -51,7 +52,7 @@ void add_assumption_warnings(Scene& scene, const RenderOptions& options) {
         if (finding.severity != Severity::note)
             scene.warnings.push_back(finding.text);
         else if (!options.progress.is_quiet)
-            fmt::print(stderr, "relief: note: {}\n", name_setting(finding.text, is_mesh_file(options.input)));
+            print_error("relief: note: {}\n", name_setting(finding.text, is_mesh_file(options.input)));
     }
 }
 
@@ -61,7 +62,7 @@ std::string name_setting(std::string warning, bool is_mesh) {
 
 void print_warnings(const std::vector<std::string>& warnings, bool is_mesh) {
     for (const std::string& warning : warnings)
-        fmt::print(stderr, "relief: warning: {}\n", name_setting(warning, is_mesh));
+        print_error("relief: warning: {}\n", name_setting(warning, is_mesh));
 }
 
 std::vector<std::string> ToldWarnings::take_new(const std::vector<std::string>& warnings) {
@@ -85,7 +86,7 @@ void RenderWatcher::on_warnings(const std::vector<std::string>& warnings) {
     if (!options_.progress.is_quiet || options_.is_strict)
         print_warnings(fresh, is_mesh_file(options_.input));
     is_refused_ = options_.is_strict && !warnings.empty();
-    if (is_refused_) fmt::print(stderr, "relief: nothing is rendered with warnings under --strict\n");
+    if (is_refused_) print_error("relief: nothing is rendered with warnings under --strict\n");
 }
 
 void RenderWatcher::on_progress(const Progress& progress) {

@@ -16,6 +16,7 @@
 
 #include "base/suggest.h"
 #include "commands.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/inputs.h"
 #include "common/progress.h"
@@ -127,8 +128,8 @@ int run_scene(const SceneOptions& options) {
     if (before == read_text(file))
         std::filesystem::remove(copy);
     else if (!before.empty())
-        fmt::print(stderr, "relief: the scene that was there is kept as {}\n", copy);
-    fmt::print("wrote {}\n", file.string());
+        print_error("relief: the scene that was there is kept as {}\n", copy);
+    print_output("wrote {}\n", file.string());
     return kExitDone;
 }
 
@@ -150,8 +151,8 @@ Value traversals_to_json(EngineKind engine) {
 
 void print_traversals(EngineKind engine) {
     for (const StructureKind structure : kStructures)
-        fmt::print("        --structure {:<6}  --traversal {}\n", structure_name(structure),
-                   fmt::join(list_traversals(engine, structure), " | "));
+        print_output("        --structure {:<6}  --traversal {}\n", structure_name(structure),
+                     fmt::join(list_traversals(engine, structure), " | "));
 }
 
 Value to_json(const DeviceInfo& device) {
@@ -168,14 +169,14 @@ Value to_json(const DeviceInfo& device) {
 }
 
 void print_device(const DeviceInfo& device) {
-    fmt::print("vulkan  device {}  {}  {}  {}  {:.1f} GiB\n", device.index, device.kind, device.name,
-               device.driver, double(device.memory_bytes) / double(1u << 30));
+    print_output("vulkan  device {}  {}  {}  {}  {:.1f} GiB\n", device.index, device.kind, device.name,
+                 device.driver, double(device.memory_bytes) / double(1u << 30));
     if (!device.missing.empty())
-        fmt::print("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
+        print_output("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
     else
-        fmt::print("        methods {}\n", fmt::join(device.methods, " "));
+        print_output("        methods {}\n", fmt::join(device.methods, " "));
     if (device.missing.empty() && !device.missing_to_draw.empty())
-        fmt::print("        fragment and hybrid: lacks {}\n", fmt::join(device.missing_to_draw, ", "));
+        print_output("        fragment and hybrid: lacks {}\n", fmt::join(device.missing_to_draw, ", "));
 }
 
 int run_devices(bool is_json) {
@@ -189,9 +190,9 @@ int run_devices(bool is_json) {
                         {"isa", isas},
                         {"structures", traversals_to_json(EngineKind::cpu)}});
         for (const DeviceInfo& device : devices) list.push_back(to_json(device));
-        fmt::print("{}\n", write_json(list));
+        print_output("{}\n", write_json(list));
     } else {
-        fmt::print("cpu     {} threads  {}\n", threads, fmt::join(isas, " "));
+        print_output("cpu     {} threads  {}\n", threads, fmt::join(isas, " "));
         print_traversals(EngineKind::cpu);
         for (const DeviceInfo& device : devices) print_device(device);
         if (!devices.empty()) print_traversals(EngineKind::vulkan);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/option_hints.h"
 #include "common/option_names.h"
 #include "relief/error.h"
@@ -25,8 +27,8 @@ namespace relief::cli {
 namespace {
 
 void report(const std::string& where, const std::string& message, const std::string& hint) {
-    fmt::print(stderr, "relief: error: {}{}{}\n", where, where.empty() ? "" : ": ", message);
-    if (!hint.empty()) fmt::print(stderr, "hint: {}\n", hint);
+    print_error("relief: error: {}{}{}\n", where, where.empty() ? "" : ": ", message);
+    if (!hint.empty()) print_error("hint: {}\n", hint);
 }
 
 /// One empty line between option groups instead of two, and of the details only under --help-all, so that the
@@ -95,6 +97,11 @@ void refuse_options_as_values(const CLI::App& app) {
 
 } // namespace
 
+int run_program(const std::function<int()>& body) {
+    open_console();
+    return close_console(run_guarded(body));
+}
+
 int run_guarded(const std::function<int()>& body) {
     try {
         return body();
@@ -126,7 +133,12 @@ std::optional<int> parse_words(CLI::App& app, int argument_count, const char* co
     try {
         app.parse(argument_count, arguments);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error); // --help and --version
+        if (error.get_exit_code() == 0) { // --help and --version
+            std::ostringstream text;
+            const int exit_code = app.exit(error, text, text);
+            write_output(text.str());
+            return exit_code;
+        }
         refuse_count(app, error);
         throw Error(ErrorKind::usage, {error.what(), "",
                                        "relief --help lists the commands, "

@@ -16,6 +16,9 @@ using Command = std::function<int()>;
 /// ErrorKind::out_of_memory, all others but relief::Error as ErrorKind::failed.
 int run_guarded(const std::function<int()>& body);
 
+/// The whole of a program: run_guarded between open_console and close_console.
+int run_program(const std::function<int()>& body);
+
 /// Groups of options that --help leaves out and --help-all shows.
 inline constexpr const char* kResearchGroup = "For research and comparison";
 inline constexpr const char* kMapDetailGroup = "Maps, meshes and pictures in detail";

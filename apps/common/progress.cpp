@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/report.h"
 #include "common/values.h"
 
@@ -35,9 +36,6 @@ double compute_rays_per_second(const Progress& progress) {
 double compute_left(const Progress& progress) {
     return progress.fraction > 0 ? progress.elapsed_s * (1 - progress.fraction) / progress.fraction : -1;
 }
-
-/// What cannot be told, on a full disk, stops no work.
-void write_error(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 bool is_render(const Progress& progress) { return progress.samples_total > 0; }
 

@@ -1,5 +1,6 @@
 #include "farm/attempts.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
@@ -28,6 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint32_t kTasksAFolder = 1000;
+constexpr size_t kReasonBytes = 1024;   ///< that the file of an attempt has room for
 constexpr double kMissedHeartbeats = 6; ///< after so many a running attempt counts as dead
 
 constexpr std::array<std::pair<AttemptState, std::string_view>, 7> kWords{
@@ -144,7 +146,38 @@ std::string read_reason(const FarmJob& job, const Attempt& attempt) {
     std::ifstream stream(get_attempt_file(job, attempt));
     std::string reason;
     std::getline(stream, reason);
-    return reason;
+    return reason.find_first_not_of(' ') != std::string::npos
+               ? reason
+               : "no reason could be written: the disk of the job folder may be full";
+}
+
+void begin_attempt(const FarmJob& job, const Attempt& attempt) {
+    const fs::path file = get_attempt_file(job, attempt);
+    errno = 0;
+    std::ofstream stream(file);
+    const bool is_made = stream.is_open();
+    if (is_made && stream << std::string(kReasonBytes, ' ') << std::flush) return;
+    const int code = errno ? errno : EIO;
+    if (is_made) {
+        Attempt failed = attempt;
+        failed.state = AttemptState::failed, failed.exit_code = int(ErrorKind::failed);
+        stream.close();
+        change_attempt(job, attempt, failed);
+    }
+    fail(fmt::format("no file can be written in the job folder: {}", std::strerror(code)), file);
+}
+
+void write_reason(const FarmJob& job, const Attempt& attempt, const std::string& reason) {
+    std::string text = reason.substr(0, reason.find('\n'));
+    text.resize(std::min(text.size(), kReasonBytes - 1));
+    text += '\n';
+    // In place: a file that is made anew gives up its room first.
+    std::fstream stream(get_attempt_file(job, attempt), std::ios::in | std::ios::out);
+    stream << text << std::flush;
+    stream.close();
+    if (stream.fail()) return;
+    std::error_code ignored;
+    fs::resize_file(get_attempt_file(job, attempt), text.size(), ignored);
 }
 
 std::vector<Attempt> list_attempts(const FarmJob& job, uint32_t task) {

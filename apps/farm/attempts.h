@@ -1,5 +1,7 @@
-// Attempts at tasks, each an empty file whose name says all of it: TASK.WHO.STATE[.NUMBERS]. A rename takes
-// it from one state to the next, so that no two machines ever see half of a change.
+// Attempts at tasks, each a file whose name says all of it: TASK.WHO.STATE[.NUMBERS]. A rename takes it from
+// one state to the next, so that no two machines ever see half of a change. Only the file of a failed attempt
+// has content, the reason; that of a running one holds blanks, which keep room for the reason on a disk that
+// fills.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +48,15 @@ bool is_process_gone(const Attempt& attempt);
 std::filesystem::path get_state_folder(const FarmJob& job, uint32_t task);
 std::filesystem::path get_attempt_file(const FarmJob& job, const Attempt& attempt);
 
-/// Why an attempt failed, the first line of its file; may be empty.
+/// Makes the file of a running attempt, with room for a reason. Throws Error{failed} where the disk has none;
+/// the attempt has failed then, where its file could be made at all.
+void begin_attempt(const FarmJob& job, const Attempt& attempt);
+
+/// Writes the reason of an attempt into the room that its file has. A reason that is too long is cut.
+void write_reason(const FarmJob& job, const Attempt& attempt, const std::string& reason);
+
+/// Why an attempt failed, the first line of its file. Where it is empty, the disk had no room for it, and the
+/// result says that.
 std::string read_reason(const FarmJob& job, const Attempt& attempt);
 
 /// All attempts at one task.

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "cli/interrupt.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/progress.h"
 #include "farm/attempts.h"
@@ -138,9 +139,9 @@ class LocalFarm {
         std::string reason;
         for (const Attempt& attempt : list_attempts(job_, worker.task))
             if (attempt.state == AttemptState::failed) reason = read_reason(job_, attempt);
-        fmt::print(stderr, "relief: warning: task {} ({}) failed with exit code {}{}{}; its log: {}\n",
-                   worker.task, describe_task(job_, find_task(job_, worker.task)), code,
-                   reason.empty() ? "" : ": ", reason, get_log_file(job_, worker.task).string());
+        print_error("relief: warning: task {} ({}) failed with exit code {}{}{}; its log: {}\n", worker.task,
+                    describe_task(job_, find_task(job_, worker.task)), code, reason.empty() ? "" : ": ",
+                    reason, get_log_file(job_, worker.task).string());
     }
 
     void tell() {
@@ -173,10 +174,10 @@ int run_locally(const FarmJob& job, const std::vector<uint32_t>& tasks, const Su
             exit_code = farm.run();
             summary = farm.describe();
         } // ends the line of progress
-        fmt::print("{}\n", summary);
+        print_output("{}\n", summary);
     }
     if (get_interrupt() != 0) {
-        fmt::print(stderr, "relief: interrupted; relief farm submit {} goes on\n", job.folder.string());
+        print_error("relief: interrupted; relief farm submit {} goes on\n", job.folder.string());
         return exit_code;
     }
     if (options.merge == MergeStep::without) return exit_code;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/interrupt.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/values.h"
 #include "farm/farm_commands.h"
@@ -25,19 +26,19 @@ void print_missing(const FarmJob& job, const MergeReport& report) {
     for (size_t k = 0; k < std::min(report.missing.size(), kMostFrames); ++k) {
         const size_t index = report.missing[k];
         std::string missing = describe_missing(job, states, index);
-        fmt::print(stderr, "relief: warning: frame {} is not whole, missing: {}\n", job.frames[index],
-                   missing.empty() ? "a part that has been put up again since" : missing);
+        print_error("relief: warning: frame {} is not whole, missing: {}\n", job.frames[index],
+                    missing.empty() ? "a part that has been put up again since" : missing);
     }
     if (report.missing.size() > kMostFrames)
-        fmt::print(stderr, "relief: warning: and {} more frames\n", report.missing.size() - kMostFrames);
+        print_error("relief: warning: and {} more frames\n", report.missing.size() - kMostFrames);
 }
 
 } // namespace
 
 int merge_and_report(const FarmJob& job, const MergeOptions& options) {
     const MergeReport report = merge_frames(job, options);
-    fmt::print("wrote {} frames; {} were there already, {} are not whole\n", report.written, report.kept,
-               report.missing.size());
+    print_output("wrote {} frames; {} were there already, {} are not whole\n", report.written, report.kept,
+                 report.missing.size());
     if (get_interrupt() != 0) return report.exit_code;
     if (report.missing.empty()) return report.exit_code;
     print_missing(job, report);

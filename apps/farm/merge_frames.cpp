@@ -18,6 +18,7 @@
 #include "cli/render_motion.h"
 #include "cli/render_warnings.h"
 #include "common/command_line.h"
+#include "common/console.h"
 #include "common/denoiser_search.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
@@ -118,8 +119,8 @@ class FrameMerger {
         const uint32_t task = uint32_t(frame_index) * job_.tasks_a_frame() + uint32_t(part);
         check_openable(get_film_file(job_, task));
         if (!declare_corrupt(job_, task, film)) return;
-        fmt::print(stderr, "relief: warning: a part is damaged: task {}, {}: {}\n", task,
-                   describe_task(job_, find_task(job_, task)), error.what());
+        print_error("relief: warning: a part is damaged: task {}, {}: {}\n", task,
+                    describe_task(job_, find_task(job_, task)), error.what());
         report.corrupt.push_back(task);
     }
 

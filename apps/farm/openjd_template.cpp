@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/report.h"
 #include "farm/batch.h"
@@ -51,9 +52,9 @@ int write_openjd_template(const FarmJob& job, const std::vector<uint32_t>& tasks
                         {"steps", std::move(steps)}};
     const std::filesystem::path file = batch.folder / "openjd.json";
     write_text_file(file, write_json(json, 2));
-    fmt::print("wrote {}\n", file.string());
-    fmt::print("openjd run {}{} runs it\n", quote_word(file.string()),
-               options.merge == MergeStep::with ? " --run-dependencies --step Merge" : " --step Render");
+    print_output("wrote {}\n", file.string());
+    print_output("openjd run {}{} runs it\n", quote_word(file.string()),
+                 options.merge == MergeStep::with ? " --run-dependencies --step Merge" : " --step Render");
     return kExitDone;
 }
 

@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/values.h"
 #include "farm/farm_commands.h"
@@ -62,12 +63,12 @@ int run_plan(PlanOptions& options, const CLI::App& verb) {
     if (!planned) return kExitWarnings;
     const FarmJob& job = *planned;
     const JobEstimate& e = job.estimate;
-    fmt::print("planned {} tasks: {} frames x {} tiles x {} ranges of samples, {} files\n", job.task_count(),
-               job.frames.size(), job.tiles, job.passes, job.files.size());
+    print_output("planned {} tasks: {} frames x {} tiles x {} ranges of samples, {} files\n",
+                 job.task_count(), job.frames.size(), job.tiles, job.passes, job.files.size());
     const double task_s = e.ready_s + e.frame_s / double(job.tasks_a_frame());
-    fmt::print("a task takes about {:.3g} s, {:.2g} s of it to be ready, with {} threads, and {:.0f} MB\n",
-               task_s, e.ready_s, e.threads, 1e-6 * double(e.memory_bytes));
-    fmt::print("relief farm submit {} renders it\n", job.folder.string());
+    print_output("a task takes about {:.3g} s, {:.2g} s of it to be ready, with {} threads, and {:.0f} MB\n",
+                 task_s, e.ready_s, e.threads, 1e-6 * double(e.memory_bytes));
+    print_output("relief farm submit {} renders it\n", job.folder.string());
     return kExitDone;
 }
 

@@ -15,6 +15,7 @@
 #include "cli/picture_settings.h"
 #include "cli/render_motion.h"
 #include "cli/render_warnings.h"
+#include "common/console.h"
 #include "common/inputs.h"
 #include "common/mesh_reader.h"
 #include "common/progress.h"
@@ -155,7 +156,7 @@ std::vector<std::string> measure_frame(const RenderOptions& options, Shot& shot,
 bool tell_warnings(const std::vector<std::string>& warnings, const RenderOptions& options) {
     if (!options.progress.is_quiet || options.is_strict) print_warnings(warnings, false);
     if (!options.is_strict || warnings.empty()) return false;
-    fmt::print(stderr, "relief: nothing is planned with warnings under --strict\n");
+    print_error("relief: nothing is planned with warnings under --strict\n");
     return true;
 }
 

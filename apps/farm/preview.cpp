@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "farm/attempts.h"
 #include "relief/io.h"
 
@@ -62,7 +63,7 @@ void write_preview(const FarmJob& job, const FarmTask& task, const Image& part) 
         const Image preview = make_preview(part, get_preview_scale(job));
         if (preview.width > 0 && preview.height > 0) write_image(preview, get_preview_file(job, task.index));
     } catch (const std::exception& error) {
-        fmt::print(stderr, "relief: warning: no preview: {}\n", error.what());
+        print_error("relief: warning: no preview: {}\n", error.what());
     }
 }
 

@@ -2,13 +2,13 @@
 
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include "common/console.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -37,11 +37,7 @@ RunningAttempt::RunningAttempt(const FarmJob& job, const FarmTask& task) : job_(
          {get_attempt_file(job, attempt_), get_film_file(job, task.index), get_preview_file(job, task.index)})
         make_job_folder(file.parent_path());
     forget_dead_attempts(job, task.index);
-    const fs::path file = get_attempt_file(job, attempt_);
-    if (!std::ofstream(file))
-        throw Error(ErrorKind::failed,
-                    {"no file can be made in the job folder", file.string(),
-                     "every machine of the farm needs free space and the right to write there"});
+    begin_attempt(job, attempt_);
     heart_ = std::thread([this] { beat(); });
 }
 
@@ -51,7 +47,7 @@ RunningAttempt::~RunningAttempt() {
     try {
         end_failed(int(ErrorKind::failed), "it ended by an exception");
     } catch (const std::exception& error) {
-        fmt::print(stderr, "relief: warning: {}\n", error.what());
+        print_error("relief: warning: {}\n", error.what());
     }
 }
 
@@ -77,6 +73,8 @@ void RunningAttempt::end(Attempt after) {
     stop_beating();
     has_ended_ = true;
     change_attempt(job_, attempt_, after);
+    std::error_code ignored;
+    if (after.state != AttemptState::failed) fs::resize_file(get_attempt_file(job_, after), 0, ignored);
 }
 
 void RunningAttempt::end_done(uint64_t rays) {
@@ -108,8 +106,7 @@ void RunningAttempt::end_failed(int exit_code, const std::string& reason) {
     Attempt after = attempt_;
     after.state = AttemptState::failed, after.exit_code = exit_code;
     end(after);
-    // Where the disk is full the name alone says it.
-    std::ofstream(get_attempt_file(job_, after)) << reason << '\n';
+    write_reason(job_, after, reason);
 }
 
 } // namespace relief::cli

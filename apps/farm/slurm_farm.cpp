@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/values.h"
 #include "farm/batch.h"
@@ -165,13 +166,13 @@ int submit_to_slurm(const FarmJob& job, const std::vector<uint32_t>& tasks, cons
         const size_t count = std::min(array_size - 1, batch.element_count - first);
         arrays.push_back(submit_array(batch, resources, options, first, count));
     }
-    fmt::print("submitted {} tasks as {} elements of {} array jobs: {}\n", tasks.size(), batch.element_count,
-               arrays.size(), fmt::join(arrays, ","));
-    fmt::print("each asks for {} MB, {} min and {} processors\n", resources.memory_mb, resources.minutes,
-               threads);
+    print_output("submitted {} tasks as {} elements of {} array jobs: {}\n", tasks.size(),
+                 batch.element_count, arrays.size(), fmt::join(arrays, ","));
+    print_output("each asks for {} MB, {} min and {} processors\n", resources.memory_mb, resources.minutes,
+                 threads);
     if (options.merge == MergeStep::with && !arrays.empty())
-        fmt::print("frames are written by job {}, which begins when they have ended\n",
-                   submit_merge(job, batch, arrays, options, threads));
+        print_output("frames are written by job {}, which begins when they have ended\n",
+                     submit_merge(job, batch, arrays, options, threads));
     return kExitDone;
 }
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "cli/interrupt.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/report.h"
 #include "farm/farm_commands.h"
@@ -29,12 +30,11 @@ struct StatusOptions {
 void print_status(const FarmJob& job, const StatusReport& report, const StatusOptions& options) {
     constexpr const char* kClear = "\033[H\033[2J";
     if (options.is_json)
-        fmt::print("{}", options.is_watched ? write_json(describe_status(job, report)) + "\n"
-                                            : write_json(describe_status(job, report), 2));
+        print_output("{}", options.is_watched ? write_json(describe_status(job, report)) + "\n"
+                                              : write_json(describe_status(job, report), 2));
     else
-        fmt::print("{}{}", options.is_watched && ::isatty(STDOUT_FILENO) ? kClear : "",
-                   format_status(job, report));
-    std::fflush(stdout);
+        print_output("{}{}", options.is_watched && ::isatty(STDOUT_FILENO) ? kClear : "",
+                     format_status(job, report));
 }
 
 /// In short steps, so that an interrupt ends it soon.
@@ -49,14 +49,14 @@ int run_status(const StatusOptions& options) {
     StatusReport report = make_status(job);
     print_status(job, report, options);
     if (options.is_watched) catch_interrupts(), poll_interrupts();
-    while (options.is_watched && !report.is_complete() && get_interrupt() == 0) {
+    while (flush_output() && options.is_watched && !report.is_complete() && get_interrupt() == 0) {
         wait_a_while();
         report = make_status(job);
         print_status(job, report, options);
     }
     if (options.sheet.empty()) return kExitDone;
     write_image(make_sheet(job, report.states), options.sheet);
-    fmt::print(stderr, "wrote {}\n", options.sheet);
+    print_error("wrote {}\n", options.sheet);
     return kExitDone;
 }
 

@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/values.h"
 #include "farm/farm_commands.h"
@@ -98,8 +99,8 @@ int submit_tasks(const FarmJob& job, const std::vector<uint32_t>& tasks, SubmitA
     a.submit.merge = a.leaves_merge ? MergeStep::without : MergeStep::with;
     if (a.submit.target == SubmitTarget::local) return run_locally(job, tasks, a.submit);
     if (tasks.empty()) {
-        fmt::print("nothing is left to be rendered; relief farm merge {} writes the frames\n",
-                   job.folder.string());
+        print_output("nothing is left to be rendered; relief farm merge {} writes the frames\n",
+                     job.folder.string());
         return kExitDone;
     }
     return a.submit.target == SubmitTarget::slurm ? submit_to_slurm(job, tasks, a.submit)
@@ -115,8 +116,8 @@ int run_submit(SubmitArguments& a) {
     for (const auto& [state, what] :
          {std::pair(TaskState::failed, "have failed"), std::pair(TaskState::stale, "show no sign of life")})
         if (const size_t count = states.count(state); count > 0)
-            fmt::print(stderr, "relief: warning: {} tasks {}: relief farm retry {} puts them up again\n",
-                       count, what, job.folder.string());
+            print_error("relief: warning: {} tasks {}: relief farm retry {} puts them up again\n", count,
+                        what, job.folder.string());
     return submit_tasks(job, list_tasks(states, {TaskState::waiting, TaskState::partial}), a);
 }
 
@@ -140,11 +141,11 @@ int run_retry(SubmitArguments& a) {
     declare_lost(job, states.stale);
     const std::vector<uint32_t> again =
         list_tasks(states, {TaskState::failed, TaskState::stale, TaskState::partial});
-    fmt::print("put up again: {} failed, {} stale and {} partial tasks{}{}\n",
-               states.count(TaskState::failed), states.count(TaskState::stale),
-               states.count(TaskState::partial), again.empty() ? "" : ": ", format_tasks(again));
+    print_output("put up again: {} failed, {} stale and {} partial tasks{}{}\n",
+                 states.count(TaskState::failed), states.count(TaskState::stale),
+                 states.count(TaskState::partial), again.empty() ? "" : ": ", format_tasks(again));
     if (!a.target) {
-        fmt::print("relief farm submit {} renders them\n", job.folder.string());
+        print_output("relief farm submit {} renders them\n", job.folder.string());
         return kExitDone;
     }
     return submit_tasks(job, list_tasks(read_states(job), {TaskState::waiting, TaskState::partial}), a);

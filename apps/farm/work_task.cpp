@@ -9,6 +9,8 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -22,6 +24,7 @@
 #include "cli/render_motion.h"
 #include "cli/render_warnings.h"
 #include "common/command_line.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
 #include "farm/damaged_part.h"
@@ -40,16 +43,18 @@ namespace fs = std::filesystem;
 
 constexpr double kDefaultCheckpointMinutes = 5;
 
-/// From now on all that this process prints goes to the end of the log.
-void open_log(const fs::path& file) {
+/// From now on all that this process prints goes to the end of the log. Returns where its errors went before.
+int open_log(const fs::path& file) {
     make_job_folder(file.parent_path());
     const int log = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (log < 0)
         throw Error(ErrorKind::failed, {fmt::format("the log cannot be written: {}", std::strerror(errno)),
                                         file.string(), "check free space and rights of the job folder"});
-    std::fflush(stdout);
+    flush_output();
+    const int errors = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     ::dup2(log, STDOUT_FILENO), ::dup2(log, STDERR_FILENO);
     ::close(log);
+    return errors;
 }
 
 /// The samples of an earlier attempt, where it left any that can be read.
@@ -87,8 +92,7 @@ RenderResult render_task(const FarmJob& job, const FarmTask& task, const RenderO
         return render_shot(shot, task.frame, std::move(loaded.scene), loaded.settings, &watcher, checkpoints);
     } catch (const Error& error) {
         if (checkpoints.parts.empty() || error.where() != checkpoints.parts.front().name) throw;
-        fmt::print(stderr, "relief: warning: the samples of an earlier attempt are left out: {}\n",
-                   error.what());
+        print_error("relief: warning: the samples of an earlier attempt are left out: {}\n", error.what());
         if (earlier) set_aside(checkpoints.parts.front().name, *earlier);
         checkpoints.parts.clear();
         loaded = load_task(task, options, shot);
@@ -135,12 +139,11 @@ int render_attempt(const FarmJob& job, const FarmTask& task, const RenderOptions
     }
     if (!result.is_complete) {
         attempt.end_partial();
-        fmt::print(stderr, "relief: interrupted; the samples so far are kept for the next attempt\n");
+        print_error("relief: interrupted; the samples so far are kept for the next attempt\n");
         return kExitSignalBase + get_interrupt();
     }
     write_preview(job, task, result.image);
     attempt.end_done(s.camera_rays + s.shadow_rays + s.bounce_rays);
-    fmt::print("rendered task {}: {}\n", task.index, describe_task(job, task));
     return kExitDone;
 }
 
@@ -150,9 +153,12 @@ bool is_done(const FarmJob& job, uint32_t task) {
 }
 
 int work_on_task(const FarmJob& job, const FarmTask& task, const WorkOptions& work) {
-    if (work.is_logged) open_log(get_log_file(job, task.index));
+    const auto report = [&](std::string_view what) {
+        const std::string line = fmt::format("{}: {}\n", what, describe_task(job, task));
+        work.is_logged ? write_error(line) : write_output(line); // a log that is full is no failure
+    };
     if (!work.is_repeated && is_done(job, task.index)) {
-        fmt::print("task {} is done already: {}\n", task.index, describe_task(job, task));
+        report(fmt::format("task {} is done already", task.index));
         return kExitDone;
     }
     RunningAttempt attempt(job, task);
@@ -163,6 +169,7 @@ int work_on_task(const FarmJob& job, const FarmTask& task, const WorkOptions& wo
         int exit_code = kExitDone;
         with_io_threads(options.settings.device.threads,
                         [&] { exit_code = render_attempt(job, task, options, attempt); });
+        if (exit_code == kExitDone) report(fmt::format("rendered task {}", task.index));
         return exit_code;
     } catch (const Error& error) {
         attempt.end_failed(int(error.kind()), error.what());
@@ -176,6 +183,25 @@ int work_on_task(const FarmJob& job, const FarmTask& task, const WorkOptions& wo
     }
 }
 
+/// Reports a failure in the log; where that is lost, for instance on a full disk, on the errors of this
+/// process.
+int work_with_log(const FarmJob& job, const FarmTask& task, const WorkOptions& work) {
+    const int errors = open_log(get_log_file(job, task.index));
+    std::clearerr(stderr);
+    const int exit_code = run_guarded([&] { return work_on_task(job, task, work); });
+    if (std::ferror(stderr) && exit_code != kExitDone && errors >= 0) {
+        std::string reason;
+        for (const Attempt& attempt : list_attempts(job, task.index))
+            if (attempt.state == AttemptState::failed) reason = ": " + read_reason(job, attempt);
+        ::dup2(errors, STDERR_FILENO);
+        print_error("relief: error: task {} ended with exit code {}{}; its log cannot be written\n",
+                    task.index, exit_code, reason);
+    }
+    ::dup2(errors, STDERR_FILENO);
+    ::close(errors);
+    return exit_code;
+}
+
 } // namespace
 
 int work_on_tasks(const FarmJob& job, const std::vector<uint32_t>& tasks, const WorkOptions& options) {
@@ -184,8 +210,9 @@ int work_on_tasks(const FarmJob& job, const std::vector<uint32_t>& tasks, const 
         catch_interrupts();
         const FarmTask task = find_task(job, index);
         // One that fails does not keep the others of the list from being rendered.
-        const int code = tasks.size() == 1 ? work_on_task(job, task, options)
-                                           : run_guarded([&] { return work_on_task(job, task, options); });
+        const int code = run_guarded([&] {
+            return options.is_logged ? work_with_log(job, task, options) : work_on_task(job, task, options);
+        });
         if (exit_code == kExitDone) exit_code = code;
         if (get_interrupt() != 0) return kExitSignalBase + get_interrupt();
     }

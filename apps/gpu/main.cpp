@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "bench/machine.h"
 #include "bench/paper1.h"
 #include "bench/tables.h"
+#include "common/console.h"
 #include "gpu/kernels.h"
 #include "gpu/parity.h"
 #include "relief/error.h"
@@ -40,7 +42,7 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
     if (!stream) throw Error(ErrorKind::failed, {"the file could not be written", file.string(), ""});
 }
 
-void report(const std::string& line) { fmt::print(stderr, "relief-gpu: {}\n", line); }
+void report(const std::string& line) { print_error("relief-gpu: {}\n", line); }
 
 RenderSettings make_settings(const Options& options) {
     RenderSettings settings;
@@ -64,7 +66,7 @@ int run_parity_verb(const Options& options) {
     }
     Value result = {{"build", bench::describe_build()}, {"machine", bench::describe_machine()}};
     result.update(run_parity(parity, report));
-    fmt::print("parity: {} passed, {} failed\n", result["passed"].get<int>(), result["failed"].get<int>());
+    print_output("parity: {} passed, {} failed\n", result["passed"].get<int>(), result["failed"].get<int>());
     if (!options.output.empty()) write_text(options.output, write_json(result, 1));
     return result["failed"] == 0 && result["passed"] > 0 ? 0 : 1;
 }
@@ -85,9 +87,9 @@ int run_bench_verb(const Options& options) {
     write_text(folder / "paper1.json", write_json(result, 1));
     write_text(folder / "paper1.csv", write_csv(bench::make_paper1_table(result)));
     for (const Value& goal : result["goals"])
-        fmt::print("{}: {:.4g} {}, goal {:.4g}\n", goal["name"].get<std::string>(),
-                   goal["reached"].get<double>(), goal["unit"].get<std::string>(),
-                   goal["goal"].get<double>());
+        print_output("{}: {:.4g} {}, goal {:.4g}\n", goal["name"].get<std::string>(),
+                     goal["reached"].get<double>(), goal["unit"].get<std::string>(),
+                     goal["goal"].get<double>());
     return 0;
 }
 
@@ -97,13 +99,13 @@ int run_kernels_verb(const Options& options) {
     if (!options.output.empty())
         write_text(options.output, write_json(result, 1));
     else
-        fmt::print("{}", options.is_json ? write_json(result, 1) : print_kernels(result));
+        print_output("{}", options.is_json ? write_json(result, 1) : print_kernels(result));
     return result["kernels"].size() > 0 ? 0 : 1;
 }
 
 int run_devices_verb() {
     const Value devices = bench::describe_vulkan_devices();
-    fmt::print("{}", write_json(devices, 1));
+    print_output("{}", write_json(devices, 1));
     return devices.empty() ? int(ErrorKind::device_missing) : 0;
 }
 
@@ -142,24 +144,32 @@ int run(int argument_count, char** arguments) {
     try {
         app.parse(argument_count, arguments);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : int(ErrorKind::usage);
+        std::ostringstream help, fault;
+        const int exit_code = app.exit(error, help, fault);
+        write_output(help.str()), write_error(fault.str());
+        return exit_code == 0 ? 0 : int(ErrorKind::usage);
     }
     if (devices->parsed()) return run_devices_verb();
     if (kernels->parsed()) return run_kernels_verb(options);
     return parity->parsed() ? run_parity_verb(options) : run_bench_verb(options);
 }
 
+int run_guarded(int argument_count, char** arguments) {
+    try {
+        return run(argument_count, arguments);
+    } catch (const Error& error) {
+        print_error("relief-gpu: error: {}\n", error.what());
+        return int(error.kind());
+    } catch (const std::exception& error) {
+        print_error("relief-gpu: error: {}\n", error.what());
+        return int(ErrorKind::failed);
+    }
+}
+
 } // namespace
 } // namespace relief::gpu
 
 int main(int argument_count, char** arguments) {
-    try {
-        return relief::gpu::run(argument_count, arguments);
-    } catch (const relief::Error& error) {
-        fmt::print(stderr, "relief-gpu: error: {}\n", error.what());
-        return int(error.kind());
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "relief-gpu: error: {}\n", error.what());
-        return int(relief::ErrorKind::failed);
-    }
+    relief::open_console();
+    return relief::close_console(relief::gpu::run_guarded(argument_count, arguments));
 }

@@ -1,7 +1,6 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/command_line.h"
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -53,7 +53,7 @@ int run_viewer(const ViewerOptions& options, double start) {
     ScriptRunner script(std::move(lines), options.script.string(), workbench, interface.view(),
                         {[&](const InputEvent& event) { window.inject(event); },
                          [&](const std::filesystem::path& file) { window.take_screenshot(file); },
-                         [](const std::string& line) { std::cout << line << std::endl; }});
+                         [](const std::string& line) { print_output("{}\n", line), flush_output(); }});
     interface.run(&script, start);
     return end();
 }
@@ -67,7 +67,7 @@ int main(int argument_count, char** arguments) {
     if (const auto read = run_mesh_reader(argument_count, arguments)) return *read;
     const double start =
         std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    return cli::run_guarded([&] {
+    return cli::run_program([&] {
         CLI::App app("Look at a scene, turn it, change how its maps are meant, paint on them", "relief view");
         cli::prepare_parsing(app);
         viewer::ViewerOptions options;

@@ -4,7 +4,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
-#include <iostream>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -16,6 +15,7 @@
 #define STB_IMAGE_WRITE_STATIC
 #include <stb_image_write.h>
 
+#include "common/console.h"
 #include "common/exit_codes.h"
 #include "viewer/browser_server.h"
 #include "viewer/signals.h"
@@ -97,7 +97,7 @@ int serve(const ViewerOptions& options) {
     const ImageSettings& image = workbench.settings().image;
     workbench.set_area({0, 0, float(image.width), float(image.height)});
     BrowserServer server(options.port.value(), [&] { bell.ring(); });
-    std::cout << server.url() << std::endl;
+    print_output("{}\n", server.url()), flush_output();
     workbench.open(options.input);
     const DisplayTable display = make_display();
     std::shared_ptr<const ShownPicture> shown;
