@@ -1,31 +1,41 @@
 #include "viewer/browser_server.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
+#include <atomic>
+#include <cerrno>
 #include <iterator>
-#include <map>
+#include <list>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <string_view>
+#include <thread>
 #include <utility>
 
-#include <civetweb.h>
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
-#include "common/report.h"
 #include "relief/error.h"
+#include "viewer/browser_connection.h"
+#include "viewer/browser_request.h"
+#include "viewer/web_socket.h"
 
 namespace relief::viewer {
 
 namespace {
 
-/// Seconds after which a browser that waits for a picture is told to ask again.
-constexpr int kPatience = 10;
-/// Bytes of a message from outside; more is no event.
-constexpr size_t kMostBytes = 1024;
+using State = BrowserConnection::State;
+using Bytes = std::shared_ptr<const std::vector<uint8_t>>;
+
+constexpr int kPatience = 10; ///< seconds after which a browser that waits for a picture is told to ask again
+constexpr size_t kMostConnections =
+    256; ///< one more ends the one that has been silent, or waiting, for longest
+constexpr int kRoundMilliseconds = 250; ///< after which deadlines are looked at
 
 std::string make_token() {
     std::random_device random;
@@ -34,186 +44,216 @@ std::string make_token() {
     return token;
 }
 
-std::string get_variable(const mg_request_info& request, const char* name) {
-    const char* const query = request.query_string ? request.query_string : "";
-    std::array<char, 128> value{};
-    const int length = mg_get_var(query, std::string_view(query).size(), name, value.data(), value.size());
-    return length > 0 ? std::string(value.data(), size_t(length)) : std::string();
+/// A socket at 127.0.0.1. Throws Error{failed} where the port cannot be had.
+int listen_at(int port) {
+    const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    const int on = 1;
+    ::setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    sockaddr_in address{};
+    address.sin_family = AF_INET, address.sin_port = htons(uint16_t(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (listener >= 0 && ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+        ::listen(listener, 128) == 0)
+        return listener;
+    ::close(listener);
+    throw Error(ErrorKind::failed, {fmt::format("127.0.0.1:{} cannot be listened on", port), "--serve",
+                                    "another program has the port: name another one, or 0 for any"});
 }
 
-/// Takes as long wherever the first difference is.
-bool are_equal(const std::string& a, const std::string& b) {
-    unsigned difference = a.size() == b.size() ? 0 : 1;
-    for (size_t k = 0; k < std::min(a.size(), b.size()); ++k) difference |= unsigned(a[k] ^ b[k]);
-    return difference == 0;
+Bytes make_bytes(std::string_view text) {
+    return std::make_shared<const std::vector<uint8_t>>(text.begin(), text.end());
 }
 
-/// For a header: letters and digits as they are, other bytes as %XX.
-std::string escape(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-        result +=
-            is_plain ? std::string(1, c) : fmt::format("%{:02X}", unsigned(static_cast<unsigned char>(c)));
-    }
-    return result;
+std::string make_lines(int status, const char* reason, const char* type, size_t bytes,
+                       const std::string& more) {
+    return fmt::format(
+        "HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n"
+        "Referrer-Policy: no-referrer\r\nConnection: close\r\n{}\r\n",
+        status, reason, type, bytes, more);
 }
 
-bool is_true(const Value& event, const char* name) {
-    return event.contains(name) && event[name].kind() == Value::Kind::truth && event[name].get<bool>();
-}
-
-std::vector<InputEvent> make_browser_event(const Value& event) {
-    using Kind = InputEvent::Kind;
-    constexpr std::pair<std::string_view, Kind> kKinds[] = {{"press", Kind::press},
-                                                            {"move", Kind::move},
-                                                            {"release", Kind::release},
-                                                            {"scroll", Kind::scroll},
-                                                            {"key", Kind::key_down}};
-    constexpr std::pair<std::string_view, int> kKeys[] = {{"left", kLeft}, {"right", kRight},  {"up", kUp},
-                                                          {"down", kDown}, {"+", '+'},         {"-", '-'},
-                                                          {".", '.'},      {"escape", kEscape}};
-    InputEvent made;
-    const std::string name = event["kind"].get<std::string>();
-    const auto* const kind = std::ranges::find(kKinds, name, &std::pair<std::string_view, Kind>::first);
-    if (kind == std::end(kKinds)) return {};
-    made.kind = kind->second;
-    made.x = std::clamp(event["x"].get<float>(), -1.0f, 2.0f);
-    made.y = std::clamp(event["y"].get<float>(), -1.0f, 2.0f);
-    made.modifiers = {is_true(event, "shift"), is_true(event, "control"), is_true(event, "alt")};
-    const int button = event["button"].get<int>();
-    made.button = button == 1 ? MouseButton::middle : button == 2 ? MouseButton::right : MouseButton::left;
-    if (made.kind == Kind::scroll) made.amount = std::clamp(event["amount"].get<float>(), -10.0f, 10.0f);
-    if (made.kind != Kind::key_down) return {made};
-    const auto* const key =
-        std::ranges::find(kKeys, event["key"].get<std::string>(), &std::pair<std::string_view, int>::first);
-    if (key == std::end(kKeys)) return {};
-    made.key = key->second;
-    made.is_repeat = is_true(event, "repeat");
-    InputEvent released = made;
-    released.kind = Kind::key_up;
-    return {made, released};
+void refuse(BrowserConnection& connection, const Refusal& refusal) {
+    const Bytes body = make_bytes(fmt::format("Error {}: {}\n", refusal.status, refusal.reason));
+    connection.answer(make_lines(refusal.status, "Refused", "text/plain", body->size(),
+                                 refusal.status == 405 ? "Allow: GET, HEAD\r\n" : ""),
+                      body);
 }
 
 } // namespace
 
-std::vector<InputEvent> parse_browser_event(const std::string& text) {
-    if (text.size() > kMostBytes) return {};
-    try {
-        return make_browser_event(read_json(text));
-    } catch (const std::exception&) {
-        return {};
-    }
-}
-
 struct BrowserServer::Implementation {
     std::function<void()> on_events;
     std::string token = make_token();
-    std::mutex mutex;
-    std::condition_variable has_picture;
+    int listener = -1, wake = -1;
+    std::atomic<bool> is_ending{false};
+    std::mutex mutex; ///< of what follows, up to `version`
     std::vector<InputEvent> events;
-    /// Releases of the buttons that pages hold.
-    std::map<const mg_connection*, std::vector<InputEvent>> releases;
-    std::shared_ptr<const std::vector<uint8_t>> jpeg;
+    Bytes jpeg;
     std::string text;
     uint64_t version = 0;
-    bool is_ending = false;
-    mg_context* context = nullptr;
+    std::list<BrowserConnection> connections; ///< of the thread
+    std::thread thread;
 
-    bool is_allowed(const mg_connection* connection) const {
-        return are_equal(get_variable(*mg_get_request_info(connection), "token"), token);
+    ~Implementation() {
+        for (const int descriptor : {listener, wake})
+            if (descriptor >= 0) ::close(descriptor);
     }
 
-    int answer_page(mg_connection* connection) {
-        if (!is_allowed(connection)) return mg_send_http_error(connection, 403, "%s", "wrong token"), 403;
-        const size_t bytes = std::string_view(kBrowserPage).size();
-        mg_printf(connection,
-                  "HTTP/1.1 200 OK\r\nContent-Type: text/html\r\nContent-Length: %zu\r\nCache-Control: "
-                  "no-store\r\nReferrer-Policy: no-referrer\r\n\r\n",
-                  bytes);
-        mg_write(connection, kBrowserPage, bytes);
-        return 200;
+    void ring() const {
+        const uint64_t one = 1;
+        [[maybe_unused]] const ssize_t written = ::write(wake, &one, sizeof one);
     }
 
-    /// Waits for a picture that is newer than the one that the browser has.
-    int answer_picture(mg_connection* connection) {
-        if (!is_allowed(connection)) return mg_send_http_error(connection, 403, "%s", "wrong token"), 403;
-        const std::string after = get_variable(*mg_get_request_info(connection), "after");
-        std::shared_ptr<const std::vector<uint8_t>> shown;
-        std::string header;
-        {
-            std::unique_lock lock(mutex);
-            has_picture.wait_for(lock, std::chrono::seconds(kPatience),
-                                 [&] { return is_ending || (jpeg && std::to_string(version) != after); });
-            if (jpeg && std::to_string(version) != after) shown = jpeg;
-            header = fmt::format("X-Relief-Version: {}\r\nX-Relief-Text: {}\r\n", version, escape(text));
+    void run() {
+        while (!is_ending) {
+            std::vector<pollfd> watched = {{wake, POLLIN, 0}, {listener, POLLIN, 0}};
+            for (const BrowserConnection& c : connections)
+                watched.push_back({c.socket(), short(c.has_output() ? POLLIN | POLLOUT : POLLIN), 0});
+            if (::poll(watched.data(), watched.size(), kRoundMilliseconds) < 0 && errno != EINTR) return;
+            if (watched[0].revents != 0) {
+                uint64_t count = 0;
+                [[maybe_unused]] const ssize_t taken = ::read(wake, &count, sizeof count);
+            }
+            serve(watched);
+            if (watched[1].revents != 0) accept_all();
         }
-        if (!shown) {
-            mg_printf(connection, "HTTP/1.1 204 No Content\r\n\r\n");
-            return 204;
+    }
+
+    /// `watched`: from the third on, in the order of the connections.
+    void serve(const std::vector<pollfd>& watched) {
+        const BrowserClock::time_point now = BrowserClock::now();
+        size_t index = 2;
+        for (auto at = connections.begin(); at != connections.end();) {
+            BrowserConnection& c = *at;
+            const short came = watched[index++].revents;
+            bool is_there = (came & (POLLERR | POLLNVAL)) == 0;
+            if (is_there && (came & (POLLIN | POLLHUP)) != 0) is_there = c.read();
+            if (is_there) work(c);
+            if (is_there && c.state == State::waiting && c.is_over(now))
+                c.answer("HTTP/1.1 204 No Content\r\nConnection: close\r\n\r\n", nullptr);
+            if (is_there && c.has_output()) is_there = c.send();
+            if (is_there && !c.is_over(now)) {
+                ++at;
+                continue;
+            }
+            let_go(c);
+            at = connections.erase(at);
         }
-        mg_printf(connection,
-                  "HTTP/1.1 200 OK\r\nContent-Type: image/jpeg\r\nContent-Length: %zu\r\nCache-Control: "
-                  "no-store\r\n%s\r\n",
-                  shown->size(), header.c_str());
-        mg_write(connection, shown->data(), shown->size());
-        return 200;
     }
 
-    void note_buttons(const mg_connection* connection, const InputEvent& event) {
-        using Kind = InputEvent::Kind;
-        if (event.kind != Kind::press && event.kind != Kind::release) return;
-        std::vector<InputEvent>& held = releases[connection];
-        std::erase_if(held, [&](const InputEvent& release) { return release.button == event.button; });
-        if (event.kind == Kind::release) return;
-        held.push_back(event);
-        held.back().kind = Kind::release;
+    void accept_all() {
+        for (;;) {
+            const int socket = ::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+            if (socket < 0) return;
+            if (connections.size() >= kMostConnections) end_oldest();
+            connections.emplace_back(socket);
+        }
     }
 
-    void receive(const mg_connection* connection, const char* data, size_t size) {
-        std::vector<InputEvent> made = parse_browser_event(std::string(data, size));
-        if (made.empty()) return;
+    /// Those without a request go first, then those that wait for a picture, then pages.
+    void end_oldest() {
+        const auto oldest = std::ranges::min_element(
+            connections, {}, [](const BrowserConnection& c) { return std::pair(c.state, c.begin); });
+        let_go(*oldest);
+        connections.erase(oldest);
+    }
+
+    void work(BrowserConnection& c) {
+        if (c.state == State::asking) begin_answer(c);
+        if (c.state == State::waiting) answer_picture(c);
+        if (c.state == State::listening) take_messages(c);
+    }
+
+    void begin_answer(BrowserConnection& c) {
+        const size_t end = c.input.find("\r\n\r\n");
+        if (end == std::string::npos && c.input.size() <= kMostRequestBytes) return;
+        const std::optional<BrowserRequest> request =
+            end <= kMostRequestBytes ? parse_request(std::string_view(c.input).substr(0, end)) : std::nullopt;
+        if (!request) return refuse(c, {400, "this is no request of a browser"});
+        c.input.erase(0, end + 4);
+        c.is_head = request->method == "HEAD";
+        if (const std::optional<Refusal> refusal = refuse_request(*request, token))
+            return refuse(c, *refusal);
+        if (request->path == "/") {
+            const Bytes page = make_bytes(kBrowserPage);
+            return c.answer(make_lines(200, "OK", "text/html", page->size(), ""), page);
+        }
+        if (request->path == "/picture") {
+            c.after = request->variable("after");
+            return c.change(State::waiting, kPatience);
+        }
+        if (request->path != "/events") return refuse(c, {404, "there is no such page"});
+        open_events(c, *request);
+    }
+
+    void open_events(BrowserConnection& c, const BrowserRequest& request) {
+        const std::string key = request.header("sec-websocket-key");
+        if (request.method != "GET" || key.empty()) return refuse(c, {400, "events go by a WebSocket"});
+        c.add_output(
+            fmt::format("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                        "Sec-WebSocket-Accept: {}\r\n\r\n",
+                        make_accept_key(key)));
+        c.change(State::listening, 0);
+    }
+
+    /// Where the picture is newer than the one that the browser has.
+    void answer_picture(BrowserConnection& c) {
+        Bytes shown;
+        std::string more;
         {
             const std::lock_guard lock(mutex);
-            for (const InputEvent& event : made) note_buttons(connection, event);
-            std::move(made.begin(), made.end(), std::back_inserter(events));
+            if (!jpeg || std::to_string(version) == c.after) return;
+            shown = jpeg;
+            more = fmt::format("X-Relief-Version: {}\r\nX-Relief-Text: {}\r\n", version, escape(text));
         }
-        on_events();
+        c.answer(make_lines(200, "OK", "image/jpeg", shown->size(), more), shown);
+    }
+
+    void take_messages(BrowserConnection& c) {
+        SocketFrame frame;
+        for (;;) {
+            const FrameFault fault = read_frame(c.input, frame);
+            if (fault == FrameFault::incomplete) return;
+            if (fault == FrameFault::none) c.input.erase(0, frame.bytes);
+            if (fault == FrameFault::refused || frame.kind == SocketFrame::Kind::close ||
+                c.message.size() + frame.content.size() > kMostMessageBytes) {
+                c.add_output(make_close());
+                return c.end();
+            }
+            if (frame.kind == SocketFrame::Kind::ping) c.add_output(make_pong(frame.content));
+            if (frame.kind != SocketFrame::Kind::text) continue;
+            c.message += frame.content;
+            if (frame.is_last) receive(c, std::exchange(c.message, {}));
+        }
+    }
+
+    void receive(BrowserConnection& c, const std::string& message) {
+        std::vector<InputEvent> made = parse_browser_event(message);
+        if (made.empty()) return;
+        for (const InputEvent& event : made) note_buttons(c, event);
+        add_events(std::move(made));
+    }
+
+    static void note_buttons(BrowserConnection& c, const InputEvent& event) {
+        using Kind = InputEvent::Kind;
+        if (event.kind != Kind::press && event.kind != Kind::release) return;
+        std::erase_if(c.releases, [&](const InputEvent& release) { return release.button == event.button; });
+        if (event.kind == Kind::release) return;
+        c.releases.push_back(event);
+        c.releases.back().kind = Kind::release;
     }
 
     /// A page that goes away lets go of what it holds.
-    void close(const mg_connection* connection) {
-        {
-            const std::lock_guard lock(mutex);
-            const auto held = releases.extract(connection);
-            if (held.empty()) return;
-            std::move(held.mapped().begin(), held.mapped().end(), std::back_inserter(events));
-        }
-        on_events();
+    void let_go(BrowserConnection& c) {
+        if (!c.releases.empty()) add_events(std::move(c.releases));
     }
 
-    void add_handlers() {
-        mg_set_request_handler(
-            context, "/$",
-            [](mg_connection* c, void* data) { return static_cast<Implementation*>(data)->answer_page(c); },
-            this);
-        mg_set_request_handler(
-            context, "/picture$",
-            [](mg_connection* c, void* data) {
-                return static_cast<Implementation*>(data)->answer_picture(c);
-            },
-            this);
-        mg_set_websocket_handler(
-            context, "/events$",
-            [](const mg_connection* c, void* data) {
-                return static_cast<Implementation*>(data)->is_allowed(c) ? 0 : 1;
-            },
-            nullptr,
-            [](mg_connection* c, int, char* bytes, size_t size, void* data) {
-                static_cast<Implementation*>(data)->receive(c, bytes, size);
-                return 1;
-            },
-            [](const mg_connection* c, void* data) { static_cast<Implementation*>(data)->close(c); }, this);
+    void add_events(std::vector<InputEvent> made) {
+        {
+            const std::lock_guard lock(mutex);
+            std::move(made.begin(), made.end(), std::back_inserter(events));
+        }
+        on_events();
     }
 };
 
@@ -221,34 +261,23 @@ BrowserServer::BrowserServer(int port, std::function<void()> on_events)
     : implementation_(std::make_unique<Implementation>()) {
     Implementation& self = *implementation_;
     self.on_events = std::move(on_events);
-    const std::string address = fmt::format("127.0.0.1:{}", port);
-    const char* options[] = {"listening_ports",    address.c_str(), "num_threads", "32",
-                             "request_timeout_ms", "30000",         nullptr};
-    mg_init_library(0);
-    const mg_callbacks callbacks{};
-    self.context = mg_start(&callbacks, this, options);
-    if (!self.context) {
-        mg_exit_library();
-        throw Error(ErrorKind::failed, {fmt::format("{} cannot be listened on", address), "--serve",
-                                        "another program has the port: name another one, or 0 for any"});
-    }
-    self.add_handlers();
+    self.listener = listen_at(port);
+    self.wake = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    if (self.wake < 0) throw Error(ErrorKind::failed, {"the system gives no event", "--serve", ""});
+    self.thread = std::thread([&self] { self.run(); });
 }
 
 BrowserServer::~BrowserServer() {
-    {
-        const std::lock_guard lock(implementation_->mutex);
-        implementation_->is_ending = true;
-    }
-    implementation_->has_picture.notify_all();
-    mg_stop(implementation_->context);
-    mg_exit_library();
+    implementation_->is_ending = true;
+    implementation_->ring();
+    implementation_->thread.join();
 }
 
 std::string BrowserServer::url() const {
-    mg_server_port port{};
-    mg_get_server_ports(implementation_->context, 1, &port);
-    return fmt::format("http://127.0.0.1:{}/?token={}", port.port, implementation_->token);
+    sockaddr_in address{};
+    socklen_t bytes = sizeof address;
+    ::getsockname(implementation_->listener, reinterpret_cast<sockaddr*>(&address), &bytes);
+    return fmt::format("http://127.0.0.1:{}/?token={}", ntohs(address.sin_port), implementation_->token);
 }
 
 std::vector<InputEvent> BrowserServer::take_events() {
@@ -264,7 +293,7 @@ void BrowserServer::show(std::vector<uint8_t> jpeg, std::string text) {
         self.text = std::move(text);
         ++self.version;
     }
-    self.has_picture.notify_all();
+    self.ring();
 }
 
 } // namespace relief::viewer

@@ -45,7 +45,7 @@ LIBRARIES = {
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],
     r"embree3/": ["apps/bench"],
-    r"GLFW/|imgui|civetweb|stb_": ["apps/viewer"],
+    r"GLFW/|imgui|stb_": ["apps/viewer"],
     r"fmt/": ["src", "apps", "python/src"],
     r"vulkan/vulkan": ["src/vulkan", "src/lab/vulkan"],
     r"nanobind/": ["python/src"],

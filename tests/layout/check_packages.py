@@ -35,8 +35,6 @@ PACKAGES = {
     "IMGUI_LIBRARY": ["libimgui-dev"],
     "STB_LIBRARY": ["libstb-dev"],
     "STB_FOLDER": ["libstb-dev"],
-    "CIVETWEB_FOLDER": ["libcivetweb-dev"],
-    "CIVETWEB_LIBRARY": ["libcivetweb-dev"],
     # What the tests of an installed Relief look for.
     "relief": ["pkgconf"],
     # The headers; the loader comes with them. Tests need a driver and the validation layer.

@@ -1,7 +1,7 @@
 """The viewer for browsers, without a browser: serve_test.py RELIEF.
 
 Pictures refine, two viewers see the same, a drag turns the camera of both, wrong tokens and wrong messages are refused, a
-viewer that goes away without a word leaves the others well, and a signal ends it.
+viewer that goes away without a word leaves the others well, foreign pages and crowds do no harm, and a signal ends it.
 """
 import base64
 import http.client
@@ -42,9 +42,9 @@ class Page:
         self.version = 0
         self.socket = None
 
-    def get(self, path):
+    def get(self, path, method="GET", body=None, **headers):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
-        connection.request("GET", path)
+        connection.request(method, path, body, headers)
         answer = connection.getresponse()
         return answer.status, dict(answer.getheaders()), answer.read()
 
@@ -111,6 +111,52 @@ def await_same(pages, text, old=None):
     return await_true(ask, f"one picture with the text {text} for all")
 
 
+def check_refusals(url):
+    """Other methods, pages of other places, and names that were made to lead here."""
+    page = Page(url)
+    path, host = f"/?token={page.token}", f"127.0.0.1:{page.port}"
+    status, headers, body = page.get(path, "HEAD")
+    assert status == 200 and int(headers["Content-Length"]) > 1000 and body == b""
+    for method in ("POST", "PUT", "DELETE", "OPTIONS", "TRACE", "get"):
+        status, headers, _ = page.get(path, method, b"x" * 100_000 if method == "POST" else None)
+        assert status == 405 and headers["Allow"] == "GET, HEAD", (method, status)
+    for name in (host, "localhost", "localhost:9999", "LOCALHOST:1", "[::1]:80"):
+        assert page.get(path, Host=name)[0] == 200, name
+    for name in ("evil.example", f"127.0.0.1.evil.example:{page.port}", "localhost:", "127.0.0.1:80@evil.example", ""):
+        assert page.get(path, Host=name)[0] == 403, name
+    assert page.get(path, Host=host, Origin=f"http://{host}")[0] == 200
+    for origin in ("http://evil.example", "null", f"https://{host}", "http://127.0.0.1", ""):
+        assert page.get(path, Host=host, Origin=origin)[0] == 403, origin
+    for text in (b"GET\r\n\r\n", b"\r\n\r\n", b"GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil.example\r\n\r\n",
+                 b"GET /" + b"x" * 20000, b"\x16\x03\x01" * 100 + b"\r\n\r\n"):
+        with socket.create_connection(("127.0.0.1", page.port), timeout=PATIENCE) as connection:
+            connection.sendall(text)
+            assert b" 400 " in connection.recv(4096).split(b"\r\n")[0], text[:40]
+
+
+def check_crowds(url):
+    """Connections that say nothing, requests that wait, and answers that nobody reads keep no page from being answered."""
+    page = Page(url)
+    page.last_picture("4 of 4")
+    crowd = [socket.create_connection(("127.0.0.1", page.port), timeout=PATIENCE) for _ in range(500)]
+    try:
+        for k, connection in enumerate(crowd[:300]):
+            what = f"/picture?token={page.token}&after={page.version if k % 2 else 0}"
+            connection.sendall(f"GET {what} HTTP/1.1\r\nHost: localhost\r\n".encode() + (b"\r\n" if k % 3 else b""))
+        for _ in range(5):
+            assert page.get(f"/?token={page.token}")[0] == 200
+            assert page.current_picture()[0].startswith("4 of 4")
+        crowd[-1].setblocking(False)
+        try:
+            crowd[-1].recv(1)
+            raise AssertionError("answered only when the silent ones were given up")
+        except BlockingIOError:
+            pass
+    finally:
+        for connection in crowd:
+            connection.close()
+
+
 def check_viewers(url):
     first, second = Page(url), Page(url)
     status, _, page = first.get(f"/?token={first.token}")
@@ -157,6 +203,8 @@ def main():
         viewer, url = start_server(relief, folder, "160x90", 4)
         try:
             check_viewers(url)
+            check_refusals(url)
+            check_crowds(url)
             port = urllib.parse.urlsplit(url).port
             taken = subprocess.run([relief, "view", "scene.json", "--serve", str(port)], cwd=folder, text=True,
                                    capture_output=True, timeout=PATIENCE)
