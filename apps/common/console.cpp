@@ -50,9 +50,10 @@ bool flush_output() {
 int close_console(int exit_code) {
     if (flush_output()) return exit_code;
     if (lost_output_error != EPIPE)
-        print_error("relief: error: standard output cannot be written: {}\n"
-                    "hint: only printed lines are lost; an error that concerns a file has a message of its own\n",
-                    std::strerror(lost_output_error));
+        print_error(
+            "relief: error: standard output cannot be written: {}\n"
+            "hint: only printed lines are lost; an error that concerns a file has a message of its own\n",
+            std::strerror(lost_output_error));
     return exit_code == 0 ? int(ErrorKind::failed) : exit_code;
 }
 

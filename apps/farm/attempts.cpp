@@ -20,6 +20,7 @@
 
 #include "common/values.h"
 #include "farm/folder_names.h"
+#include "farm/job_file.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -143,9 +144,13 @@ fs::path get_attempt_file(const FarmJob& job, const Attempt& attempt) {
 }
 
 std::string read_reason(const FarmJob& job, const Attempt& attempt) {
-    std::ifstream stream(get_attempt_file(job, attempt));
     std::string reason;
-    std::getline(stream, reason);
+    try {
+        if (const auto stream = open_job_file(job, get_attempt_file(job, attempt)))
+            std::getline(*stream, reason);
+    } catch (const Error& error) {
+        return error.what();
+    }
     return reason.find_first_not_of(' ') != std::string::npos
                ? reason
                : "no reason could be written: the disk of the job folder may be full";

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "farm/attempts.h"
+#include "farm/job_file.h"
 #include "relief/error.h"
 #include "relief/io.h"
 
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 /// The next free number.
 fs::path make_batch_folder(const FarmJob& job) {
     const fs::path folder = job.folder / "submitted";
-    make_job_folder(folder);
+    make_job_folder(job, folder);
     for (int number = 1;; ++number) {
         std::error_code code;
         const fs::path batch = folder / std::to_string(number);

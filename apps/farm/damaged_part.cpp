@@ -40,7 +40,7 @@ bool set_aside(const fs::path& file, const FileIdentity& read) {
 }
 
 void check_openable(const fs::path& film) {
-    const int opened = ::open(film.c_str(), O_RDONLY | O_CLOEXEC);
+    const int opened = ::open(film.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (opened >= 0) {
         ::close(opened);
         return;

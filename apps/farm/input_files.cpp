@@ -29,6 +29,9 @@ InputFile read_properties(const fs::path& file) {
         throw Error(ErrorKind::bad_input,
                     {fmt::format("the file cannot be read: {}", std::strerror(errno)), file.string(),
                      "the shared storage must show it on every machine"});
+    if (!S_ISREG(status.st_mode))
+        throw Error(ErrorKind::bad_input, {"is a folder, a device, a pipe or the like", file.string(),
+                                           "a job reads files, which every machine of the farm sees"});
     return {file,
             uint64_t(status.st_size),
             count_nanoseconds(status.st_mtim),

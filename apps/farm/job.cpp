@@ -1,8 +1,9 @@
 #include "farm/job.h"
 
 #include <algorithm>
+#include <concepts>
 #include <cstdio>
-#include <fstream>
+#include <istream>
 #include <iterator>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include "common/command_line.h"
 #include "common/report.h"
 #include "common/values.h"
+#include "farm/job_file.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/shot.h"
@@ -52,18 +54,35 @@ Value describe_estimate(const JobEstimate& e) {
             {"memory_bytes", e.memory_bytes}};
 }
 
+/// A number of the manifest, whose limits are those of `farm plan`. Throws Error{bad_input}.
+template <class Number> Number read_number(const Value& record, const char* name, Number least, Number most) {
+    const Value& value = record[name];
+    const double number = value.get<double>();
+    const bool is_whole = std::floating_point<Number> || value.kind() == Value::Kind::integer;
+    if (is_whole && number >= double(least) && number <= double(most)) return value.get<Number>();
+    throw Error(ErrorKind::bad_input,
+                {fmt::format("'{}' is {}, and not {}from {} to {}", name, write_json(value),
+                             std::floating_point<Number> ? "" : "an integer ", least, most),
+                 "", ""});
+}
+
 JobEstimate read_estimate(const Value& value) {
-    return {value["ready_s"].get<double>(), value["frame_s"].get<double>(), value["threads"].get<int>(),
-            value["memory_bytes"].get<uint64_t>()};
+    constexpr double kMostSeconds = 1e9;
+    constexpr uint64_t kMostBytes = uint64_t(1) << 50;
+    return {read_number(value, "ready_s", 0.0, kMostSeconds),
+            read_number(value, "frame_s", 0.0, kMostSeconds), read_number(value, "threads", 1, kMaxThreads),
+            read_number(value, "memory_bytes", uint64_t(0), kMostBytes)};
 }
 
 std::string read_manifest_text(const fs::path& folder) {
     const fs::path file = folder / kManifest;
-    std::ifstream stream(file, std::ios::binary);
+    FarmJob place;
+    place.folder = folder;
+    const std::unique_ptr<std::istream> stream = open_job_file(place, file);
     if (!stream)
         throw Error(ErrorKind::bad_input, {"there is no manifest of a job that can be read", file.string(),
                                            "relief farm plan SCENE.json --frames 1-24 -o JOB writes one"});
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return {std::istreambuf_iterator<char>(*stream), {}};
 }
 
 FarmJob read_manifest(const Value& json, const fs::path& folder) {
@@ -74,16 +93,26 @@ FarmJob read_manifest(const Value& json, const fs::path& folder) {
     job.pictures = folder / json["pictures"].get<std::string>();
     for (const Value& word : json["options"]) job.options.push_back(word.get<std::string>());
     job.frames = parse_frames(json["frames"].get<std::string>());
-    job.tiles = json["tiles"].get<int>(), job.passes = json["passes"].get<int>();
-    job.width = json["width"].get<int>(), job.height = json["height"].get<int>();
-    job.spp = json["spp"].get<int>();
-    job.heartbeat_s = json["heartbeat_s"].get<double>();
+    job.width = read_number(json, "width", 1, kMaxPictureSize);
+    job.height = read_number(json, "height", 1, kMaxPictureSize);
+    job.spp = read_number(json, "spp", 1, kMaxSamples);
+    job.tiles = read_number(json, "tiles", 1, std::min(kMostTiles, job.height));
+    job.passes = read_number(json, "passes", 1, std::min(kMostPasses, job.spp));
+    job.heartbeat_s = read_number(json, "heartbeat_s", kLeastHeartbeat_s, kMostHeartbeat_s);
+    check_task_count(job.frames.size(), job.tiles, job.passes);
     job.estimate = read_estimate(json["estimate"]);
     for (const Value& file : json["files"]) job.files.push_back(read_input_file(file));
     return job;
 }
 
 } // namespace
+
+void check_task_count(size_t frames, int tiles, int passes) {
+    const uint64_t count = uint64_t(frames) * uint64_t(tiles) * uint64_t(passes);
+    if (count > kMostTasks)
+        throw Error(ErrorKind::usage, {fmt::format("these are {} tasks, more than {}", count, kMostTasks),
+                                       "--tiles, --passes", "fewer of them"});
+}
 
 FarmTask find_task(const FarmJob& job, uint32_t index) {
     if (index >= job.task_count())
@@ -117,7 +146,7 @@ FarmJob read_job(const fs::path& folder) {
     int layout = kLayout;
     try {
         const Value json = read_json(text);
-        layout = json["layout"].get<int>();
+        layout = read_number(json, "layout", 0, 1 << 20);
         if (layout == kLayout) job = read_manifest(json, fs::absolute(folder).lexically_normal());
     } catch (const Error& error) {
         throw Error(ErrorKind::bad_input, {"the manifest is damaged: " + error.message(), place, hint});
@@ -126,8 +155,7 @@ FarmJob read_job(const fs::path& folder) {
         throw Error(ErrorKind::bad_input,
                     {fmt::format("it is a job folder of layout {}, not {}", layout, kLayout), place,
                      "use the version of Relief that planned it"});
-    const bool is_sound = !job->frames.empty() && job->tiles > 0 && job->passes > 0 && job->spp > 0;
-    if (!is_sound)
+    if (job->frames.empty())
         throw Error(ErrorKind::bad_input, {"the manifest is damaged: there are no tasks", place, hint});
     return *std::move(job);
 }

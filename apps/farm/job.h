@@ -14,6 +14,13 @@
 
 namespace relief::cli {
 
+inline constexpr int kMostTiles = 65536, kMostPasses = 4096; ///< per frame
+inline constexpr uint64_t kMostTasks = 100'000'000;          ///< per job
+inline constexpr double kLeastHeartbeat_s = 0.05, kMostHeartbeat_s = 3600;
+
+/// Throws Error{usage} for more than kMostTasks tasks.
+void check_task_count(size_t frames, int tiles, int passes);
+
 /// What one task costs, by what `inspect` measured when the job was planned.
 struct JobEstimate {
     double ready_s = 0;        ///< to load and prepare a frame

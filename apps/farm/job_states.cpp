@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "farm/folder_names.h"
+#include "farm/job_file.h"
 
 namespace relief::cli {
 
@@ -63,7 +64,9 @@ class StateReader {
     void read_folders() {
         std::vector<fs::path> folders;
         const fs::path root = job_.folder / "state";
+        check_job_file(job_, root);
         visit_names(root, [&](const char* name) { folders.push_back(root / name); });
+        for (const fs::path& folder : folders) check_job_file(job_, folder);
         states_.folders_read = folders.size();
         std::atomic<size_t> next = 0;
         const auto read_some = [&] {

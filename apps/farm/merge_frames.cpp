@@ -24,6 +24,7 @@
 #include "common/mesh_reader.h"
 #include "farm/damaged_part.h"
 #include "farm/folder_names.h"
+#include "farm/job_file.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
@@ -42,8 +43,9 @@ fs::path get_written_mark(const FarmJob& job, size_t frame_index) {
 }
 
 void mark_written(const FarmJob& job, size_t frame_index) {
-    make_job_folder(get_written_folder(job));
+    make_job_folder(job, get_written_folder(job));
     const fs::path mark = get_written_mark(job, frame_index);
+    check_job_file(job, mark);
     if (!std::ofstream(mark))
         throw Error(ErrorKind::failed, {"the frame is written, but this cannot be noted", mark.string(),
                                         "check free space and rights of the job folder"});
@@ -57,8 +59,7 @@ std::vector<FilmPart> list_parts(const FarmJob& job, size_t frame_index, const R
         RenderSettings settings = whole;
         apply_task(find_task(job, index), settings);
         const fs::path file = get_film_file(job, index);
-        parts.push_back({file.string(),
-                         [file] { return std::make_unique<std::ifstream>(file, std::ios::binary); },
+        parts.push_back({file.string(), [&job, file] { return open_job_file(job, file); },
                          settings.image.crop, settings.image.first_sample});
     }
     return parts;
@@ -88,6 +89,7 @@ class FrameMerger {
     std::optional<int> merge(size_t frame_index, MergeReport& report) {
         const int frame = job_.frames[frame_index];
         const double start = get_seconds();
+        check_picture(frame);
         check_files(job_.files, shot_.list_files(frame));
         Scene scene = shot_.load(frame);
         const RenderSettings settings = prepare_picture(options_, scene);
@@ -102,11 +104,15 @@ class FrameMerger {
             result = render_shot(shot_, frame, std::move(scene), settings, &watcher, checkpoints);
             if (watcher.is_refused()) return kExitWarnings;
         } catch (const Error& error) {
-            const auto part = std::ranges::find(checkpoints.parts, error.where(), &FilmPart::name);
-            if (part == checkpoints.parts.end()) throw;
-            const auto index = size_t(part - checkpoints.parts.begin());
-            if (!is_frame_written(job_, frame_index))
-                note_damage(error, frame_index, index, films[index], report);
+            std::vector<Error::Parts> faults = {{error.message(), error.where(), error.hint()}};
+            faults.insert(faults.end(), error.further().begin(), error.further().end());
+            for (const Error::Parts& fault : faults) {
+                const auto part = std::ranges::find(checkpoints.parts, fault.where, &FilmPart::name);
+                if (part == checkpoints.parts.end()) throw;
+                const auto index = size_t(part - checkpoints.parts.begin());
+                if (!is_frame_written(job_, frame_index))
+                    note_damage(fault, frame_index, index, films[index], report);
+            }
             return std::nullopt;
         }
         return finish_picture(options_, settings, name_frame(job_.pictures, frame), {start, load_s}, result,
@@ -114,13 +120,22 @@ class FrameMerger {
     }
 
   private:
-    void note_damage(const Error& error, size_t frame_index, size_t part,
+    /// Pictures of a job that are in its folder stay there.
+    void check_picture(int frame) const {
+        const fs::path picture = name_frame(job_.pictures, frame);
+        const fs::path inner = picture.lexically_relative(job_.folder);
+        if (inner.empty() || inner.native().starts_with("..")) return; // --pictures named the place
+        check_job_file(job_, picture.parent_path());
+        check_job_file(job_, picture);
+    }
+
+    void note_damage(const Error::Parts& fault, size_t frame_index, size_t part,
                      const std::optional<FileIdentity>& film, MergeReport& report) {
         const uint32_t task = uint32_t(frame_index) * job_.tasks_a_frame() + uint32_t(part);
         check_openable(get_film_file(job_, task));
         if (!declare_corrupt(job_, task, film)) return;
         print_error("relief: warning: a part is damaged: task {}, {}: {}\n", task,
-                    describe_task(job_, find_task(job_, task)), error.what());
+                    describe_task(job_, find_task(job_, task)), Error::describe(fault));
         report.corrupt.push_back(task);
     }
 

@@ -22,8 +22,6 @@ namespace relief::cli {
 
 namespace {
 
-constexpr int kMostTiles = 65536, kMostPasses = 4096;
-
 /// Options of `render` that are of one picture, or that say which part of it is rendered.
 constexpr std::array<const char*, 12> kForeign = {
     "-o",          "--tile",       "--samples", "--edits",      "--pixel",  "--stats",
@@ -91,7 +89,8 @@ Command add_farm_plan(CLI::App& verb) {
               [options](const std::string& text) { options->pictures = text; });
     add_value(verb, "--heartbeat", "S", "a task that is silent for six times as long is dead; default 10",
               [options](const std::string& text) {
-                  options->heartbeat_s = parse_number("--heartbeat", text, 0.05, 3600);
+                  options->heartbeat_s =
+                      parse_number("--heartbeat", text, kLeastHeartbeat_s, kMostHeartbeat_s);
               });
     return [options, &verb] { return run_plan(*options, verb); };
 }

@@ -33,7 +33,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint64_t kMostTasks = 100'000'000;
 constexpr double kFilesRead = 0.7; ///< of the work; the estimate comes last
 
 /// Folders of a new job, removed again unless it is kept.
@@ -69,10 +68,7 @@ std::vector<int> choose_job_frames(const PlanOptions& options, const Shot& shot)
     if (frames.empty())
         throw Error(ErrorKind::usage, {"the scene file names no frames", options.render.input.string(),
                                        "--frames 1-24; --frames 1 for a still picture"});
-    const uint64_t count = uint64_t(frames.size()) * uint64_t(options.tiles) * uint64_t(options.passes);
-    if (count > kMostTasks)
-        throw Error(ErrorKind::usage, {fmt::format("these are {} tasks, more than {}", count, kMostTasks),
-                                       "--tiles, --passes", "fewer of them"});
+    check_task_count(frames.size(), options.tiles, options.passes);
     return frames;
 }
 

@@ -5,10 +5,10 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include "common/console.h"
+#include "farm/job_file.h"
 #include "relief/error.h"
 
 namespace relief::cli {
@@ -35,7 +35,7 @@ RunningAttempt::RunningAttempt(const FarmJob& job, const FarmTask& task) : job_(
     attempt_.task = task.index, attempt_.who = make_attempt_name();
     for (const fs::path& file :
          {get_attempt_file(job, attempt_), get_film_file(job, task.index), get_preview_file(job, task.index)})
-        make_job_folder(file.parent_path());
+        make_job_folder(job, file.parent_path());
     forget_dead_attempts(job, task.index);
     begin_attempt(job, attempt_);
     heart_ = std::thread([this] { beat(); });

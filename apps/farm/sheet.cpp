@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "farm/attempts.h"
+#include "farm/job_file.h"
 #include "farm/preview.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -58,6 +59,7 @@ void add_task(const FarmJob& job, uint32_t index, SmallFrame& frame) {
     std::error_code code;
     if (!std::filesystem::exists(file, code)) return; // a band of less than a row
     try {
+        check_job_file(job, file);
         const FarmTask task = find_task(job, index);
         const Image preview = read_image(file);
         if (preview.channels.size() == 3) frame.add(preview, task.samples.second - task.samples.first);

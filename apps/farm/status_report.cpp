@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <fstream>
+#include <istream>
+#include <memory>
 
 #include <fmt/format.h>
 
+#include "farm/job_file.h"
 #include "farm/merge_frames.h"
+#include "relief/error.h"
 
 namespace relief::cli {
 
@@ -16,8 +19,16 @@ namespace {
 constexpr size_t kMostFailures = 10, kMostLogLines = 3;
 constexpr size_t kMostListed = 20; ///< tasks of a kind that are named
 
-std::vector<std::string> read_last_lines(const std::filesystem::path& file, size_t count) {
-    std::ifstream stream(file, std::ios::binary);
+std::vector<std::string> read_last_lines(const FarmJob& job, const std::filesystem::path& file,
+                                         size_t count) {
+    std::unique_ptr<std::istream> opened;
+    try {
+        opened = open_job_file(job, file);
+    } catch (const Error& error) {
+        return {error.what()};
+    }
+    if (!opened) return {};
+    std::istream& stream = *opened;
     constexpr std::streamoff kTail = 4096; // logs may be long
     stream.seekg(0, std::ios::end);
     const std::streamoff size = stream.tellg();
@@ -31,7 +42,7 @@ std::vector<std::string> read_last_lines(const std::filesystem::path& file, size
 }
 
 FailedTask describe_failure(const FarmJob& job, const Attempt& attempt) {
-    FailedTask failed{attempt, {}, read_last_lines(get_log_file(job, attempt.task), kMostLogLines)};
+    FailedTask failed{attempt, {}, read_last_lines(job, get_log_file(job, attempt.task), kMostLogLines)};
     failed.reason = read_reason(job, attempt);
     return failed;
 }

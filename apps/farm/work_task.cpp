@@ -28,6 +28,7 @@
 #include "common/exit_codes.h"
 #include "common/mesh_reader.h"
 #include "farm/damaged_part.h"
+#include "farm/job_file.h"
 #include "farm/preview.h"
 #include "farm/running_attempt.h"
 #include "relief/error.h"
@@ -44,8 +45,9 @@ namespace fs = std::filesystem;
 constexpr double kDefaultCheckpointMinutes = 5;
 
 /// From now on all that this process prints goes to the end of the log. Returns where its errors went before.
-int open_log(const fs::path& file) {
-    make_job_folder(file.parent_path());
+int open_log(const FarmJob& job, const fs::path& file) {
+    make_job_folder(job, file.parent_path());
+    check_job_file(job, file);
     const int log = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (log < 0)
         throw Error(ErrorKind::failed, {fmt::format("the log cannot be written: {}", std::strerror(errno)),
@@ -63,8 +65,8 @@ std::vector<FilmPart> find_earlier_samples(const FarmJob& job, const FarmTask& t
     const fs::path file = get_partial_film_file(job, task.index);
     std::error_code code;
     if (!fs::exists(file, code)) return {};
-    return {{file.string(), [file] { return std::make_unique<std::ifstream>(file, std::ios::binary); },
-             settings.image.crop, settings.image.first_sample}};
+    return {{file.string(), [&job, file] { return open_job_file(job, file); }, settings.image.crop,
+             settings.image.first_sample}};
 }
 
 /// A frame, ready to be rendered as a task.
@@ -186,7 +188,7 @@ int work_on_task(const FarmJob& job, const FarmTask& task, const WorkOptions& wo
 /// Reports a failure in the log; where that is lost, for instance on a full disk, on the errors of this
 /// process.
 int work_with_log(const FarmJob& job, const FarmTask& task, const WorkOptions& work) {
-    const int errors = open_log(get_log_file(job, task.index));
+    const int errors = open_log(job, get_log_file(job, task.index));
     std::clearerr(stderr);
     const int exit_code = run_guarded([&] { return work_on_task(job, task, work); });
     if (std::ferror(stderr) && exit_code != kExitDone && errors >= 0) {

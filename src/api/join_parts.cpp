@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <istream>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "api/picture_report.h"
 #include "relief/error.h"
@@ -11,8 +13,9 @@ namespace relief {
 
 namespace {
 
-void join_part(const FilmPart& part, RenderSettings settings, uint64_t scene_hash,
-               const std::shared_ptr<const InstanceMattes>& mattes, Film& film) {
+/// The film of a part, and the number of samples before its own.
+std::pair<Film, int> read_part(const FilmPart& part, RenderSettings settings, uint64_t scene_hash,
+                               const std::shared_ptr<const InstanceMattes>& mattes, const Film& film) {
     const int before = part.first_sample - settings.image.first_sample;
     settings.image.crop = part.window, settings.image.first_sample = part.first_sample;
     Film read = make_film(settings.image, mattes);
@@ -28,7 +31,7 @@ void join_part(const FilmPart& part, RenderSettings settings, uint64_t scene_has
     const std::unique_ptr<std::istream> stream = part.open();
     if (!stream || !*stream) throw Error(ErrorKind::bad_input, {"it cannot be read", "", ""});
     read.read(*stream, describe_samples(settings, scene_hash));
-    film.join(read, uint32_t(before));
+    return {std::move(read), before};
 }
 
 } // namespace
@@ -48,12 +51,17 @@ void join_parts(const std::vector<FilmPart>& parts, const RenderSettings& settin
     std::vector<const FilmPart*> order;
     for (const FilmPart& part : parts) order.push_back(&part);
     std::ranges::stable_sort(order, {}, [](const FilmPart* part) { return part->first_sample; });
+    std::vector<Error::Parts> faults;
     for (const FilmPart* part : order) try {
-            join_part(*part, settings, scene_hash, mattes, film);
+            const auto [read, before] = read_part(*part, settings, scene_hash, mattes, film);
+            // Behind a fault a part may lack the samples before it, which is no fault of its own.
+            if (faults.empty()) film.join(read, uint32_t(before));
         } catch (const Error& error) {
             if (error.kind() != ErrorKind::bad_input) throw;
-            throw Error(error.kind(), {error.message(), part->name, error.hint()});
+            faults.push_back({error.message(), part->name, error.hint()});
         }
+    if (faults.empty()) return;
+    throw Error(ErrorKind::bad_input, faults.front(), {faults.begin() + 1, faults.end()});
 }
 
 } // namespace relief

@@ -2,11 +2,12 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
 
-from farm_shot import read_status, run, write_shot
+from farm_shot import damage, read_status, run, write_shot
 
 SMALL = ["--size", "32x18", "--spp", "2", "--bounces", "1", "-q"]
 
@@ -113,6 +114,96 @@ def check_full_disk(relief, folder):
     expect(result.stderr, "No space left on device", "check free space")
 
 
+def check_damaged_films(relief, folder):
+    """All are named by one run, and no more than those."""
+    words = [relief, "farm", "plan", folder / "shot.json", "--frames", "1-2", "--tiles", "2", "--passes", "2", *SMALL]
+    run(*words, "-o", folder / "films")
+    run(relief, "farm", "submit", folder / "films", "--no-merge", "-q")
+    films = folder / "films/parts/000000"
+    damage(films / "0.film")
+    (films / "3.film").write_bytes((films / "3.film").read_bytes()[:100])
+    (films / "5.film").unlink()
+    (films / "6.film").unlink()
+    os.mkfifo(films / "6.film")
+    (films / "7.film").rename(folder / "elsewhere.film")
+    (films / "7.film").symlink_to(folder / "elsewhere.film")
+    for verb in ("merge", "submit"):
+        copy = folder / f"films-{verb}"
+        shutil.copytree(folder / "films", copy, symlinks=True, ignore=lambda _, names: [n for n in names if n == "6.film"])
+        os.mkfifo(copy / "parts/000000/6.film")
+        told = run(relief, "farm", verb, copy, "-q", code=3).stderr
+        named = sorted(int(line.split("task ")[1].split(",")[0]) for line in told.splitlines() if "a part is damaged" in line)
+        assert named == [0, 3, 5, 6, 7], told
+        expect(told, "a symbolic link leads out of the job", "is a device, a pipe or the like")
+        run(relief, "farm", "submit", copy, "-q")
+        assert read_status(relief, copy)["frames"]["written"] == 2
+
+
+def check_manifest_limits(relief, folder):
+    """Those of `farm plan`; nothing is allocated for a count beyond them."""
+    plan(relief, folder, "limits")
+    manifest = folder / "limits/job.json"
+    text = manifest.read_text()
+    for key, value in (("tiles", 0), ("tiles", 19), ("tiles", 2**32 + 2), ("tiles", 2.5), ("passes", -1), ("passes", 3),
+                       ("width", 65537), ("height", 10**30), ("spp", 2**40), ("heartbeat_s", 0), ("heartbeat_s", 1e300),
+                       ("tiles", "2"), ("frames", "1-100000000000"), ("frames", "1-2000000000"), ("layout", 1.5)):
+        job = json.loads(text)
+        job[key] = value
+        manifest.write_text(json.dumps(job))
+        for verb in ("status", "merge", "submit", "retry"):
+            expect(run(relief, "farm", verb, folder / "limits", code=3).stderr, "limits/job.json")
+    job = json.loads(text)
+    job.update(height=65536, spp=4096, tiles=65536, passes=4096)
+    manifest.write_text(json.dumps(job))
+    expect(run(relief, "farm", "status", folder / "limits", code=3).stderr, "more than 100000000")
+    for key, value in (("threads", 10**9), ("ready_s", -1), ("memory_bytes", 1e300)):
+        job = json.loads(text)
+        job["estimate"][key] = value
+        manifest.write_text(json.dumps(job))
+        expect(run(relief, "farm", "status", folder / "limits", code=3).stderr, f"'{key}' is")
+
+
+def check_links_and_pipes(relief, folder):
+    """What another user of the storage may put into a job: nothing outside is read or written, and nothing waits."""
+    outside = folder / "outside"
+    outside.mkdir()
+    for place in ("state", "parts", "log", "previews"):
+        job = folder / f"link-{place}"
+        plan(relief, folder, job.name)
+        (job / place).rmdir() if (job / place).exists() else None
+        (job / place).symlink_to(outside)
+        result = run(relief, "farm", "work", job, "--task", "0", *(["--log"] if place == "log" else []), code=3)
+        expect(result.stderr, "a symbolic link leads out of the job")
+        assert not list(outside.iterdir()), place
+    job = folder / "link-frames"
+    plan(relief, folder, job.name)
+    (job / "frames").rmdir()
+    (job / "frames").symlink_to(outside)
+    expect(run(relief, "farm", "submit", job, "-q", code=3).stderr, "link-frames/frames: a symbolic link leads out of the job")
+    assert not list(outside.iterdir())
+    job = folder / "link-log-file"
+    plan(relief, folder, job.name)
+    secret = folder / "secret.txt"
+    secret.write_text("secret\n")
+    (job / "log/000000").mkdir(parents=True)
+    (job / "log/000000/0.txt").symlink_to(secret)
+    expect(run(relief, "farm", "work", job, "--task", "0", "--log", code=3).stderr, "a symbolic link leads out of the job")
+    (job / "state/000000").mkdir()
+    (job / "state/000000/0.host-1-1.failed.1").symlink_to(secret)
+    os.mkfifo(job / "state/000000/1.host-1-1.failed.1")
+    os.mkfifo(job / "log/000000/1.txt")
+    (job / "written").mkdir()
+    told = run(relief, "farm", "status", job).stdout
+    expect(told, "a symbolic link leads out of the job", "is a device, a pipe or the like")
+    assert "secret\n" not in told and secret.read_text() == "secret\n"
+    pipe = folder / "pipe"
+    pipe.mkdir()
+    os.mkfifo(pipe / "job.json")
+    expect(run(relief, "farm", "status", pipe, code=3).stderr, "is a device, a pipe or the like")
+    (folder / "moved").symlink_to(folder / "job")  # the job folder itself may be a link
+    read_status(relief, folder / "moved")
+
+
 def check_rights(relief, folder):
     """Of a folder that nobody can write to, neither can root."""
     plan(relief, folder, "closed")
@@ -135,6 +226,9 @@ def main():
         check_changed_file(relief, folder)
         check_other_version(relief, folder)
         check_full_disk(relief, folder)
+        check_damaged_films(relief, folder)
+        check_manifest_limits(relief, folder)
+        check_links_and_pipes(relief, folder)
         check_rights(relief, folder)
 
 

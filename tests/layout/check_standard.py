@@ -10,7 +10,7 @@ from sources import INCLUDE, finish, list_code
 # Names by their headers; a name of several is in each.
 DECLARED = {
     "algorithm": """adjacent_find all_of any_of clamp copy copy_backward copy_if copy_n count count_if equal fill fill_n find
-        find_if find_if_not is_sorted lower_bound max max_element min min_element minmax minmax_element next_permutation
+        find_if find_if_not is_sorted lower_bound max max_element min min_element minmax minmax_element mismatch next_permutation
         none_of nth_element partition remove_if replace replace_if reverse shuffle sort stable_partition stable_sort
         swap_ranges transform unique upper_bound ranges""",
     "array": "array",
