@@ -15,6 +15,7 @@ namespace {
 
 /// Quads, smooth where the mesh says so.
 SmoothBase make_base(Polygons polygons, const Subdivision& subdivision, const BaseNeeds& base_needs) {
+    if (subdivision.scheme != SubdivisionScheme::catmark) polygons = cut_concave_faces(std::move(polygons));
     if (subdivision.scheme != SubdivisionScheme::none) return subdivide(polygons, subdivision, base_needs);
     SmoothBase base;
     bool is_all_quads = true;

@@ -17,12 +17,6 @@ namespace {
 /// Of the square of the longest edge: rounding of collinear corners.
 constexpr double kSmallestAreaRatio = 1e-12;
 
-/// A point on the edge between two corners of a face, at this part of its length.
-struct EdgePoint {
-    uint32_t point;
-    float part;
-};
-
 using Edge = std::pair<uint32_t, uint32_t>;
 
 /// The faces that have no area, 1 each.
@@ -58,7 +52,7 @@ class Splicer {
         const auto neighbour = corner_of_edge_.find({begin, end});
         if (neighbour == corner_of_edge_.end()) return;
         const double whole = get_length(face, longest);
-        std::vector<EdgePoint> points;
+        std::vector<PointOnWay> points;
         double reached = 0;
         for (uint32_t k = longest + 1; k + 1 < longest + size; ++k) {
             reached += get_length(face, k % size);
@@ -70,8 +64,8 @@ class Splicer {
     }
 
     /// What goes between a corner and the next one of its face.
-    const std::vector<EdgePoint>& find(uint32_t corner) const {
-        static const std::vector<EdgePoint> kNone;
+    const std::vector<PointOnWay>& find(uint32_t corner) const {
+        static const std::vector<PointOnWay> kNone;
         const auto found = points_of_corner_.find(corner);
         return found == points_of_corner_.end() ? kNone : found->second;
     }
@@ -90,27 +84,8 @@ class Splicer {
     const Polygons& polygons_;
     std::vector<uint32_t> numbers_;
     std::map<Edge, uint32_t> corner_of_edge_;
-    std::map<uint32_t, std::vector<EdgePoint>> points_of_corner_;
+    std::map<uint32_t, std::vector<PointOnWay>> points_of_corner_;
 };
-
-template <class Value> Value mix(const Value& a, const Value& b, float part) {
-    return a * (1 - part) + b * part;
-}
-
-/// Adds a corner of `from`, or a point between it and the next one.
-void add_corner(const Polygons& from, uint32_t corner, uint32_t next, const EdgePoint& at, Polygons& to) {
-    to.points.push_back(at.point);
-    if (!from.uvs.empty()) to.uvs.push_back(mix(from.uvs[corner], from.uvs[next], at.part));
-    for (size_t n = 0; n < from.further_uvs.size(); ++n) {
-        const std::vector<Vec2f>& uvs = from.further_uvs[n].uvs;
-        to.further_uvs[n].uvs.push_back(mix(uvs[corner], uvs[next], at.part));
-    }
-    if (!from.normals.empty()) to.normals.push_back(mix(from.normals[corner], from.normals[next], at.part));
-    if (from.tangents.empty()) return;
-    std::array<float, 4> tangent = from.tangents[corner];
-    for (size_t c = 0; c < 3; ++c) tangent[c] += (from.tangents[next][c] - tangent[c]) * at.part;
-    to.tangents.push_back(tangent);
-}
 
 } // namespace
 
@@ -161,13 +136,12 @@ void drop_degenerate_faces(Polygons& polygons) {
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
         if (is_dropped[face]) continue;
         const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
-        kept.starts.push_back(uint32_t(kept.points.size()));
-        kept.source_faces.push_back(polygons.source_faces[face]);
+        begin_face(polygons, face, kept);
         for (uint32_t k = 0; k < size; ++k) {
             const uint32_t next = start + (k + 1) % size;
-            add_corner(polygons, start + k, next, {polygons.points[start + k], 0}, kept);
-            for (const EdgePoint& point : splicer.find(start + k))
-                add_corner(polygons, start + k, next, point, kept);
+            add_corner(polygons, start + k, kept);
+            for (const PointOnWay& point : splicer.find(start + k))
+                add_corner_between(polygons, start + k, next, point, kept);
         }
     }
     kept.starts.push_back(uint32_t(kept.points.size()));

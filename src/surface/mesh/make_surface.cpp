@@ -317,7 +317,9 @@ Polygons make_plain_polygons(const Mesh& mesh, const SurfaceContext& context, Ba
     const std::span<const int> uv_sets = context.uv_sets;
     if (mesh.subdivision.scheme == SubdivisionScheme::none)
         return cut_to_triangles(make_polygons(mesh, Welding::none, uv_sets));
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
+    Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
+    if (mesh.subdivision.scheme == SubdivisionScheme::bilinear)
+        polygons = cut_concave_faces(std::move(polygons));
     const BaseNeeds needs{BasePatches::bilinear, choose_tolerance(context, polygons), nullptr, false,
                           get_limit(context)};
     const SmoothBase base = subdivide(polygons, mesh.subdivision, needs);

@@ -148,7 +148,28 @@ template <class Corner> Vec3<double> sum_newell(uint32_t size, const Corner& cor
     return sum;
 }
 
+template <class Value> Value mix(const Value& a, const Value& b, float part) {
+    return part == 0 ? a : a * (1 - part) + b * part;
+}
+
 } // namespace
+
+void add_corner_between(const Polygons& from, uint32_t corner, uint32_t next, const PointOnWay& at,
+                        Polygons& to) {
+    to.points.push_back(at.point);
+    if (!from.uvs.empty()) to.uvs.push_back(mix(from.uvs[corner], from.uvs[next], at.part));
+    for (size_t n = 0; n < from.further_uvs.size(); ++n) {
+        const std::vector<Vec2f>& uvs = from.further_uvs[n].uvs;
+        to.further_uvs[n].uvs.push_back(mix(uvs[corner], uvs[next], at.part));
+    }
+    if (!from.normals.empty()) to.normals.push_back(mix(from.normals[corner], from.normals[next], at.part));
+    if (!from.bitangents.empty())
+        to.bitangents.push_back(mix(from.bitangents[corner], from.bitangents[next], at.part));
+    if (from.tangents.empty()) return;
+    std::array<float, 4> tangent = from.tangents[corner];
+    for (size_t c = 0; c < 3; ++c) tangent[c] = mix(tangent[c], from.tangents[next][c], at.part);
+    to.tangents.push_back(tangent);
+}
 
 std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
     std::unordered_map<Vec3f, uint32_t, PositionHash> first_at;

@@ -55,6 +55,30 @@ Polygons refine_to_quads(const Polygons& polygons);
 /// Keeps triangles and convex quads; cuts other faces by ears in the plane of their Newell normal.
 Polygons cut_to_triangles(const Polygons& polygons);
 
+/// Keeps convex faces and cuts concave ones by the same ears. Edges between faces get no new points. A cut
+/// between two points that another edge or cut joins gets a point in its middle, so that no two faces share
+/// it by mistake. Returns `polygons` as they are where all faces are convex.
+Polygons cut_concave_faces(Polygons polygons);
+
+/// A point at a part of the way from a corner to another one of its face, in [0, 1).
+struct PointOnWay {
+    uint32_t point;
+    float part = 0;
+};
+
+/// Appends a corner to the last face of `to`, with values interpolated between two corners of `from`.
+void add_corner_between(const Polygons& from, uint32_t corner, uint32_t next, const PointOnWay& at,
+                        Polygons& to);
+/// Appends a corner of `from` as it is.
+inline void add_corner(const Polygons& from, uint32_t corner, Polygons& to) {
+    add_corner_between(from, corner, corner, {from.points[corner]}, to);
+}
+/// Begins a face of `to`, which comes from the same face of the mesh as `face` of `from`.
+inline void begin_face(const Polygons& from, uint32_t face, Polygons& to) {
+    to.starts.push_back(uint32_t(to.points.size()));
+    to.source_faces.push_back(from.source_faces[face]);
+}
+
 /// Twice the area vector by Newell's method in double precision, of a face or of corners in space.
 Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face);
 Vec3<double> compute_newell_normal(std::span<const Vec3f> corners);
