@@ -16,6 +16,7 @@
 #include "common/exit_codes.h"
 #include "common/inputs.h"
 #include "common/map_options.h"
+#include "common/mesh_options.h"
 #include "common/mesh_reader.h"
 #include "common/option_names.h"
 #include "common/progress.h"
@@ -39,6 +40,7 @@ struct ConvertOptions {
     std::optional<MapSamples> samples;
     std::optional<std::string> subdivision;
     std::optional<int> subdivision_level;
+    std::optional<float> weld; ///< of the mesh, also of that of a map
     ProgressOptions progress;
 };
 
@@ -133,7 +135,10 @@ int convert_map_file(const ConvertOptions& options) {
     print_warnings(options, warnings);
     warnings.clear();
     std::optional<Mesh> mesh;
-    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()}, warnings);
+    if (!options.mesh.empty()) {
+        mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()}, warnings);
+        mesh->weld = options.weld;
+    }
     print_warnings(options, warnings);
     warnings.clear();
     WorkProgress progress(options.progress);
@@ -155,7 +160,7 @@ Scene load_surface(const ConvertOptions& options) {
     scene.reader = make_mesh_reader();
     scene.displacement_map = options.displacement_map;
     scene.map = options.from;
-    scene.subdivision = options.subdivision;
+    scene.subdivision = options.subdivision, scene.weld = options.weld;
     // Without a view no level can be chosen by it.
     if (options.subdivision) scene.subdivision_level = options.subdivision_level.value_or(kUsualSubdivision);
     return load_mesh_scene(options.input, scene);
@@ -167,7 +172,7 @@ int convert_surface(const ConvertOptions& options) {
     const bool is_mesh = get_kind(options.input) == FileKind::mesh;
     if (options.subdivision_level && !options.subdivision)
         refuse("--subdivision-level needs a subdivision scheme", options.input, "--subdivision catmark");
-    if (is_mesh && options.displacement_map.empty() && !options.subdivision) {
+    if (is_mesh && options.displacement_map.empty() && !options.subdivision && !options.weld) {
         if (options.level || !options.from_given.empty())
             refuse((options.level ? std::string("--level") : options.from_given.front()) +
                        " goes with --vdm MAP",
@@ -181,7 +186,8 @@ int convert_surface(const ConvertOptions& options) {
         print_output("wrote {}\n", options.output);
         return kExitDone;
     }
-    if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() || options.subdivision))
+    if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() ||
+                     options.subdivision || options.weld))
         refuse("a scene file says itself what its meshes and maps are", options.input, "");
     WorkProgress progress(options.progress);
     const Scene scene = load_surface(options);
@@ -209,6 +215,8 @@ int run_convert(const ConvertOptions& options) {
             refuse("a map alone is no surface", options.input, "relief convert MESH --vdm MAP -o OUT.ply");
         if (!options.displacement_map.empty())
             refuse("--vdm goes with a mesh", options.input, "name the mesh by --mesh");
+        if (options.weld && options.mesh.empty())
+            refuse("--weld needs a mesh", options.input, "name the mesh by --mesh");
         return convert_map_file(options);
     }
     if (!options.mesh.empty() || options.samples)
@@ -243,6 +251,8 @@ void add_surface_options(CLI::App& verb, ConvertOptions& options) {
             options.subdivision_level =
                 int(parse_integer("--subdivision-level", text, 0, kMaxSubdivisionLevel));
         });
+    add("--weld", "EPS", "distance at which open edges are joined (default: rounding errors; 0: never)",
+        [&](const std::string& text) { options.weld = parse_weld(text); });
 }
 
 void set_samples(ConvertOptions& options, const std::string& text) {

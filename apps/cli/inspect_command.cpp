@@ -102,7 +102,10 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
     progress.tell(kRead);
     const MapMeaning meaning = options.map_only.empty() ? MapMeaning::unknown : MapMeaning::declared;
     std::optional<Mesh> mesh;
-    if (!options.mesh.empty()) mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()}, mesh_warnings);
+    if (!options.mesh.empty()) {
+        mesh = load_mesh(options.mesh, {.reader = make_mesh_reader()}, mesh_warnings);
+        mesh->weld = options.scene.weld;
+    }
     const Mesh* mesh_or_null = mesh ? &*mesh : nullptr;
     const Displacement meant = meaning == MapMeaning::declared ? map : guess_map_meaning(map, mesh_or_null);
     Inspection inspection =
@@ -237,12 +240,17 @@ void print_inspection_json(const Inspection& inspection, const std::string& file
     print_output("{}", write_json(json, 2));
 }
 
+/// The one option of meshes that counts for the mesh of a map, too.
+bool is_weld(const std::string& option) { return option == "--weld"; }
+
 void check_options(const InspectOptions& options) {
     if (options.file.empty())
         throw Error(ErrorKind::usage, {"no file given", "", "relief inspect SCENE.json, a mesh or a map"});
     refuse_foreign_file(options.file);
     const FileKind kind = get_kind(options.file);
-    if (kind != FileKind::mesh && !options.mesh_only.empty())
+    const bool is_of_mesh =
+        options.mesh.empty() ? kind == FileKind::mesh : std::ranges::all_of(options.mesh_only, is_weld);
+    if (!is_of_mesh && !options.mesh_only.empty())
         throw Error(ErrorKind::usage,
                     {fmt::format("{} goes with a mesh", options.mesh_only.front()), options.file,
                      "relief inspect MESH --vdm MAP, or a scene file that says it all"});

@@ -18,25 +18,31 @@ namespace relief::cli {
 
 namespace {
 
-/// displacement.axes = t,n,b becomes "axes": "t,n,b", as under 'displacements' of a scene file.
-std::string name_keys(std::string text) {
-    constexpr std::string_view kStart = "displacement.", kEquals = " = ";
-    for (size_t at = 0; (at = text.find(kStart, at)) != std::string::npos;) {
+/// `section`.axes = t,n,b becomes "axes": "t,n,b", as in a scene file.
+std::string name_keys_of(std::string_view section, std::string text) {
+    constexpr std::string_view kEquals = " = ";
+    for (size_t at = 0; (at = text.find(section, at)) != std::string::npos;) {
         const size_t equals = text.find(kEquals, at);
         if (equals == std::string::npos) break;
         const size_t value = equals + kEquals.size();
         size_t end = value;
         while (end < text.size() && text[end] != ' ' && text[end] != ';') ++end;
         if (end > value && text[end - 1] == ',') --end;
-        const std::string key = text.substr(at + kStart.size(), equals - at - kStart.size());
+        const std::string key = text.substr(at + section.size(), equals - at - section.size());
         const std::string word = text.substr(value, end - value);
-        const bool is_number = word.find_first_not_of("0123456789.-") == std::string::npos;
+        const bool is_number = word.find_first_not_of("0123456789.-+e") == std::string::npos;
         const std::string written =
             is_number ? fmt::format("\"{}\": {}", key, word) : fmt::format("\"{}\": \"{}\"", key, word);
         text.replace(at, end - at, written);
         at += written.size();
     }
     return text;
+}
+
+/// As under 'displacements' and 'meshes'.
+std::string name_keys(std::string text) {
+    if (text.find("mesh.weld = ") != std::string::npos) text = name_keys_of("mesh.", std::move(text));
+    return name_keys_of("displacement.", std::move(text));
 }
 
 /// What is done before the first ray.

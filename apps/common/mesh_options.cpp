@@ -12,6 +12,8 @@
 
 namespace relief::cli {
 
+float parse_weld(const std::string& text) { return float(parse_number("--weld", text, 0, 1e18)); }
+
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
                       std::vector<std::string>& given) {
     const auto add = [&](const char* name, const char* value, const char* help,
@@ -49,6 +51,8 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
     add("--subdivision-level", "auto|N",
         "patches per quad: 2^N x 2^N, or few and near enough (default: auto)",
         [&options](const std::string& text) { options.subdivision_level = parse_subdivision_level(text); });
+    add("--weld", "EPS", "distance at which open edges are joined (default: rounding errors; 0: never)",
+        [&options](const std::string& text) { options.weld = parse_weld(text); });
     add("--filter", "NAME", "of the map: cubic or bspline up close, mip from afar, none (default)",
         [&options](const std::string& text) { options.map.filter = text; });
     add_flag("--dequantize", "smooth the steps of 8 and 16-bit maps; filter cubic or bspline",

@@ -9,9 +9,12 @@
 
 namespace relief::cli {
 
-/// Adds --vdm, --subdivision, --subdivision-level, --filter, --dequantize, --autobump and --no-dilate, and
-/// sets the reader to that of make_mesh_reader(). Given options are appended to `given`; all arguments must
-/// outlive parsing.
+/// The value of --weld. Throws Error{usage}.
+float parse_weld(const std::string& text);
+
+/// Adds --vdm, --subdivision, --subdivision-level, --weld, --filter, --dequantize, --autobump and
+/// --no-dilate, and sets the reader to that of make_mesh_reader(). Given options are appended to `given`; all
+/// arguments must outlive parsing.
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
                       std::vector<std::string>& given);
 

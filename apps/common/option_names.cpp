@@ -14,7 +14,7 @@ struct OptionName {
 };
 
 /// An entry that contains another one precedes it.
-constexpr std::array<OptionName, 38> kOptions{{
+constexpr std::array<OptionName, 39> kOptions{{
     {"image.width and image.height", "--size"},
     {"image.spp", "--spp"},
     {"image.bounces", "--bounces"},
@@ -49,6 +49,7 @@ constexpr std::array<OptionName, 38> kOptions{{
     {"displacement.midlevel", "--midlevel"},
     {"displacement.encoding", "--encoding"},
     {"displacement.wrap", "--wrap"},
+    {"mesh.weld", "--weld"},
     {"image.width", "--size"},
     {"image.height", "--size"},
     {"vulkan_devices()", "`relief devices`"},

@@ -6,10 +6,12 @@ namespace relief::cli {
 
 namespace {
 
-constexpr std::string_view kStart = "displacement.";
-constexpr std::array<std::string_view, 14> kMapKeys = {
-    "axes",  "space",  "scale",  "midlevel", "type",       "wrap",   "encoding",
-    "frame", "filter", "flip_v", "lengths",  "dequantize", "dilate", "autobump"};
+constexpr std::array<std::string_view, 15> kKeys = {
+    "displacement.axes",     "displacement.space",    "displacement.scale",
+    "displacement.midlevel", "displacement.type",     "displacement.wrap",
+    "displacement.encoding", "displacement.frame",    "displacement.filter",
+    "displacement.flip_v",   "displacement.lengths",  "displacement.dequantize",
+    "displacement.dilate",   "displacement.autobump", "mesh.weld"};
 
 bool is_part_of_name(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -29,10 +31,11 @@ size_t find_whole_name(std::string_view text, std::string_view name, size_t at) 
 }
 
 std::string name_map_keys(std::string text) {
-    for (const std::string_view key : kMapKeys) {
-        const std::string name = std::string(kStart) + std::string(key);
-        for (size_t at = 0; (at = find_whole_name(text, name, at)) != std::string::npos; at += key.size())
-            text.erase(at, kStart.size());
+    for (const std::string_view name : kKeys) {
+        const size_t start = name.find('.') + 1;
+        for (size_t at = 0; (at = find_whole_name(text, name, at)) != std::string::npos;
+             at += name.size() - start)
+            text.erase(at, start);
     }
     return text;
 }

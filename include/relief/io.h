@@ -116,6 +116,7 @@ struct MeshSceneOptions {
     MapOptions map;
     std::optional<std::string> subdivision; ///< scheme: none, bilinear or catmark
     std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel], or kAutoSubdivisionLevel (default)
+    std::optional<float> weld;              ///< see Mesh::weld
     std::filesystem::path environment;      ///< empty: a studio, see load_mesh_scene
     MeshReaderSettings reader;
 };

@@ -89,7 +89,11 @@ struct Mesh {
         tangents;                ///< one per corner: unit x, y, z, and the sign of the bitangent; or empty
     std::vector<Crease> creases; ///< used where the mesh is subdivided
     Subdivision subdivision;     ///< of the rendered surface
-    int uv_set = 0;              ///< number of the set that `uvs` are, [0, kMaxUvSet]
+    /// Open edges whose ends are so near to each other become one edge where the mesh is displaced or
+    /// subdivided; units of the mesh, >= 0. 0: only equal positions join. Unset: some rounding errors of the
+    /// positions.
+    std::optional<float> weld;
+    int uv_set = 0; ///< number of the set that `uvs` are, [0, kMaxUvSet]
     /// Other sets, each of its own number. Displacement and tangents go by `uvs` alone.
     std::vector<UvSet> further_uvs;
 };

@@ -50,6 +50,7 @@ class Mesh:
     creases: (K, 3), rows of two indices of positions and a sharpness, 10 being infinitely sharp; or a tuple of edges (K, 2)
         and sharpness (K,).
     subdivision: dict of the scene file's key: scheme, level, uv, boundary, creases.
+    weld: distance at which open edges are joined, scene units; None: rounding errors, 0: never.
     warnings: what of the file that it was loaded from does not show in it.
 
     The attributes hold the arrays; `sizes` and `corners` are those of the faces, `uv_set` is the number of the set that
@@ -57,7 +58,8 @@ class Mesh:
 
     def __init__(self, positions: Any, faces: Any, uvs: Any = None, uv_indices: Any = None, normals: Any = None,
                  normal_indices: Any = None, tangents: Any = None, creases: Any = None,
-                 subdivision: Optional[Mapping[str, Any]] = None, further_uvs: Optional[Mapping[int, Any]] = None) -> None:
+                 subdivision: Optional[Mapping[str, Any]] = None, further_uvs: Optional[Mapping[int, Any]] = None,
+                 weld: Optional[float] = None) -> None:
         self.positions: Array = as_floats(positions, "positions", 3)
         self.sizes, corners = split_faces(faces)
         self.corners: Array = as_indices(corners, "faces", len(self.positions))
@@ -73,6 +75,7 @@ class Mesh:
         if not isinstance(subdivision, (Mapping, type(None))):
             raise TypeError(f"subdivision: a dict of scheme, level, ... is needed, not {subdivision!r:.60}")
         self.subdivision: Optional[dict[str, Any]] = None if subdivision is None else dict(subdivision)
+        self.weld: Optional[float] = None if weld is None else float(weld)
         self.warnings: list[str] = []
         self._collect()
 
@@ -185,6 +188,7 @@ class Mesh:
         mesh.uv_set = arrays.get("uv_set", 0)
         mesh.further_uvs = dict(arrays.get("further_uvs", {}))
         mesh.subdivision = None
+        mesh.weld = None
         mesh.warnings = []
         return mesh
 

@@ -82,6 +82,8 @@ class Collector:
                 raise Error(str(error), kind="bad_input", where=f"meshes.{name}") from error
             if mesh.subdivision is not None:
                 keys.setdefault("subdivision", mesh.subdivision)
+            if mesh.weld is not None:
+                keys.setdefault("weld", mesh.weld)
         return self.convert(keys, f"meshes.{name}")
 
     def convert_object(self, value: Mapping[str, Any], place: str) -> Any:
@@ -174,15 +176,18 @@ class Scene:
 
     @classmethod
     def from_mesh(cls, mesh: Union[Mesh, Path], displacement: Any = None, material: Any = None, environment: Any = None,
-                  subdivision: Optional[Mapping[str, Any]] = None, preset: Optional[str] = None) -> Scene:
+                  subdivision: Optional[Mapping[str, Any]] = None, preset: Optional[str] = None,
+                  weld: Optional[float] = None) -> Scene:
         """A mesh with automatic camera and light. displacement: a Displacement, or a map: an array or a name of a file.
-        preset: of the program that the map is from, as --preset of the command. environment: a picture of the light (array or
+        preset: of the program that the map is from, as --preset of the command. weld: as of a Mesh. environment: a picture of the light (array or
         name); None: a studio with a key light, a fill and a rim."""
         scene = cls()
         name = None if isinstance(mesh, Mesh) else as_path(mesh, "mesh", "a Mesh, or the name of a file")
         keys: dict[str, Any] = {"file": mesh if name is None else os.path.abspath(name)}
         if subdivision is not None:
             keys["subdivision"] = dict(subdivision)
+        if weld is not None:
+            keys["weld"] = float(weld)
         if preset is not None:
             if displacement is None:
                 raise Error("a preset is of a displacement, and there is none", where="preset")

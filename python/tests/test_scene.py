@@ -31,6 +31,24 @@ class SceneTest(unittest.TestCase):
         np.testing.assert_array_equal(self.render(scene), self.render(saved))
         np.testing.assert_array_equal(self.render(scene), self.render(self.folder / "scene.json"))
 
+    def test_the_weld_of_a_mesh_is_its_key(self):
+        apart = 1.5e-5
+        points = [[-1, 0, 0], [0, 0, 0], [0, 1, 0], [-1, 1, 0], [apart, 0, 0], [1, 0, 0], [1, 1, 0], [apart, 1, 0]]
+        uvs = np.tile(np.float32([[0, 0], [1, 0], [1, 1], [0, 1]]), (2, 1))
+        for weld, count in ((None, 8), (2e-5, 6)):
+            mesh = relief.Mesh(points, [[0, 1, 2, 3], [4, 5, 6, 7]], uvs=uvs, weld=weld)
+            scene = relief.Scene()
+            scene.add(mesh, displacement=relief.Displacement(np.zeros((2, 2, 3), np.float32), space="object"))
+            self.assertEqual(len(relief.convert(scene, level=0).positions), count)
+            self.assertEqual(any("weld" in warning for warning in self.warn(scene)), weld is None)
+            scene.save(self.folder / str(count))
+            saved = relief.Scene.load(self.folder / str(count) / "scene.json")
+            self.assertEqual([keys.get("weld") for keys in saved.meshes.values()], [weld])
+
+    def warn(self, scene):
+        scene.environment = relief.Environment()
+        return relief.render(scene, size=(8, 8), spp=1, bounces=1).warnings
+
     def test_a_scene_that_moves_is_saved_with_its_motion(self):
         scene = scenes.make_scene()
         scene.camera = relief.Camera(from_={"keys": [[1, [0, 0, 4]], [3, [0, 0, 8]]]}, to=(0, 0, 0))

@@ -36,18 +36,16 @@ std::vector<uint32_t> number_corners(const Mesh& mesh, const MakeKey& make_key) 
 
 } // namespace
 
-std::vector<uint32_t> number_points(const Mesh& mesh) {
-    return number_corners<3>(mesh, [&](size_t corner) {
-        const Vec3f& p = mesh.positions[mesh.position_indices[corner]];
-        return Key<3>{to_bits(p.x), to_bits(p.y), to_bits(p.z)};
-    });
+std::vector<uint32_t> number_points(const Mesh& mesh, const JoinedPoints& joined) {
+    return number_corners<1>(
+        mesh, [&](size_t corner) { return Key<1>{joined.representatives[mesh.position_indices[corner]]}; });
 }
 
 std::vector<uint32_t> number_uv_points(const Mesh& mesh) {
-    return number_corners<5>(mesh, [&](size_t corner) {
-        const Vec3f& p = mesh.positions[mesh.position_indices[corner]];
+    const std::vector<uint32_t> points = number_points(mesh, join_points(mesh));
+    return number_corners<3>(mesh, [&](size_t corner) {
         const Vec2f& uv = mesh.uvs[mesh.uv_indices[corner]];
-        return Key<5>{to_bits(p.x), to_bits(p.y), to_bits(p.z), to_bits(uv.x), to_bits(uv.y)};
+        return Key<3>{points[corner], to_bits(uv.x), to_bits(uv.y)};
     });
 }
 

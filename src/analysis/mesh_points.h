@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "relief/scene.h"
+#include "surface/mesh/join_points.h"
 
 namespace relief {
 
-/// One number a corner, the same where positions are exactly equal.
-std::vector<uint32_t> number_points(const Mesh& mesh);
+/// One number per corner, the same where points are joined.
+std::vector<uint32_t> number_points(const Mesh& mesh, const JoinedPoints& joined);
 
-/// One number a corner, the same where positions and uvs are exactly equal. For meshes with uvs.
+/// One number per corner, the same where number_points() has the same and uvs are equal. For meshes with uvs.
 std::vector<uint32_t> number_uv_points(const Mesh& mesh);
 
 } // namespace relief

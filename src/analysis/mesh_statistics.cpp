@@ -155,7 +155,9 @@ MeshShape measure_shape(const Mesh& mesh) {
         else
             ++shape.others;
     }
-    count_edges(list_half_edges(mesh, number_points(mesh)), shape);
+    shape.joined = join_points(mesh);
+    shape.near_edges = find_near_edges(mesh);
+    count_edges(list_half_edges(mesh, number_points(mesh, shape.joined)), shape);
     return shape;
 }
 

@@ -7,13 +7,16 @@
 #include <vector>
 
 #include "relief/scene.h"
+#include "surface/mesh/join_points.h"
 
 namespace relief {
 
-/// Faces by corners, and edges by the faces that meet there; points at equal positions count as one.
+/// Faces by corners, and edges by the faces that meet there; points that join_points() joins count as one.
 struct MeshShape {
     size_t triangles = 0, quads = 0, others = 0;
     size_t open_edges = 0;              ///< of one face
+    JoinedPoints joined;                ///< of edges that were open
+    NearEdges near_edges;               ///< among the open ones
     size_t crowded_edges = 0;           ///< of more than two faces
     size_t turned_edges = 0;            ///< whose two faces run it the same way: one of them is inside out
     std::optional<size_t> crowded_face; ///< one that has a crowded edge

@@ -1,6 +1,7 @@
 // make_displaced_mesh: the micro-quads of displaced surfaces as a plain mesh with shared vertices.
 #include <array>
 #include <memory>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/render.h"
+#include "surface/mesh/join_points.h"
 #include "surface/patch/patch_samples.h"
 
 namespace relief {
@@ -128,13 +130,29 @@ class SurfaceCutter {
     std::unordered_map<uint64_t, std::vector<uint32_t>> edges_; ///< by the ends of their lines
 };
 
+/// Adds the points of a plain mesh, joined where its weld says so. Returns their numbers from the first one.
+std::vector<uint32_t> add_plain_points(const Mesh& source, const Affine& world_from_object, Mesh& mesh) {
+    std::vector<uint32_t> numbers(source.positions.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    const std::vector<uint32_t> joined = source.weld ? join_points(source).representatives : numbers;
+    const size_t first = mesh.positions.size();
+    for (uint32_t point = 0; point < numbers.size(); ++point) {
+        if (joined[point] == point) {
+            numbers[point] = uint32_t(mesh.positions.size() - first);
+            mesh.positions.push_back(transform_point(world_from_object, source.positions[point]));
+        } else {
+            numbers[point] = numbers[joined[point]]; // which is a lower number
+        }
+    }
+    return numbers;
+}
+
 /// A plain mesh as it is, moved to its place. Without uvs its corners lie at (0, 0).
 void add_plain(const Mesh& source, const Object& object, Mesh& mesh) {
     const auto first = uint32_t(mesh.positions.size()), first_uv = uint32_t(mesh.uvs.size());
     const bool is_turned = compute_determinant(object.world_from_object) < 0,
                has_uvs = !source.uv_indices.empty();
-    for (const Vec3f& position : source.positions)
-        mesh.positions.push_back(transform_point(object.world_from_object, position));
+    const std::vector<uint32_t> points = add_plain_points(source, object.world_from_object, mesh);
     if (has_uvs)
         mesh.uvs.insert(mesh.uvs.end(), source.uvs.begin(), source.uvs.end());
     else
@@ -144,7 +162,7 @@ void add_plain(const Mesh& source, const Object& object, Mesh& mesh) {
         mesh.face_sizes.push_back(size);
         for (uint32_t k = 0; k < size; ++k) {
             const size_t corner = begin + (is_turned ? size - 1 - k : k);
-            mesh.position_indices.push_back(first + source.position_indices[corner]);
+            mesh.position_indices.push_back(first + points[source.position_indices[corner]]);
             const uint32_t uv = has_uvs ? source.uv_indices[corner] : 0;
             mesh.uv_indices.push_back(uv == kNoIndex ? kNoIndex : first_uv + uv);
         }

@@ -65,6 +65,8 @@ void find_degenerate_mistakes(const Mesh& mesh, std::vector<Finding>& findings) 
 }
 
 void find_edge_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
+    if (shape.near_edges.count > 0)
+        add_warning(findings, "W-NEAR", "{}", describe_near_edges(shape.near_edges));
     if (shape.crowded_edges > 0)
         add_warning(findings, "W-NONMANIF",
                     "{} edges have more than two faces (one is of face {}): the surface has no two sides "
@@ -111,6 +113,17 @@ Fact describe_points(const MeshShape& shape) {
     return fact;
 }
 
+/// Points on edges that lay on each other.
+Fact describe_joined(const JoinedPoints& joined) {
+    Fact fact{"joined_points", "0", {{"", double(joined.moved_points), "count"}}};
+    if (joined.moved_points == 0) return fact;
+    fact.value = fmt::format("{} on {} edges that were open, within {:.3g} of each other",
+                             joined.moved_points, joined.joined_edges, joined.farthest);
+    fact.numbers.push_back({"edges", double(joined.joined_edges), "count"});
+    fact.numbers.push_back({"farthest", double(joined.farthest), "scene units"});
+    return fact;
+}
+
 std::string describe_tangents(const Mesh& mesh) {
     if (!mesh.tangents.empty()) return "in the file";
     return mesh.uvs.empty() ? "none: no uvs" : "made from uvs";
@@ -130,6 +143,7 @@ void describe_shape(const Mesh& mesh, const MeshShape& shape, Inspection& result
                            {"others", double(shape.others), "count"}}},
                          describe_points(shape),
                          make_count("open_edges", shape.open_edges),
+                         describe_joined(shape.joined),
                          describe_bounds(box),
                          {"base", describe_base(mesh), {}},
                          {"normals", mesh.normal_indices.empty() ? "none" : "in the file", {}},

@@ -12,7 +12,7 @@ namespace {
 constexpr uint64_t kMostKeptFaces = 1 << 18;
 
 std::unique_ptr<const SubdivisionMesh> make_limit(const Mesh& mesh) {
-    return std::make_unique<const SubdivisionMesh>(make_polygons(mesh, Welding::equal_points),
+    return std::make_unique<const SubdivisionMesh>(make_polygons(mesh, Welding::joined_points),
                                                    mesh.subdivision);
 }
 

@@ -11,6 +11,7 @@
 #include "scene/face_uvs.h"
 #include "scene/uv_sets.h"
 #include "surface/mesh/degenerate_faces.h"
+#include "surface/mesh/join_points.h"
 
 namespace relief {
 
@@ -52,6 +53,13 @@ void warn_of_degenerate_faces(const Mesh& mesh, std::vector<std::string>& warnin
     warnings.push_back(
         fmt::format("mesh '{}': {} of {} faces have no area and are left out; the first is face {}",
                     mesh.name, faces.count, mesh.face_sizes.size(), faces.first));
+}
+
+/// Of a mesh that is displaced or subdivided: others are seen as their files have them.
+void warn_of_near_edges(const Mesh& mesh, std::vector<std::string>& warnings) {
+    const NearEdges edges = find_near_edges(mesh);
+    if (edges.count == 0) return;
+    warnings.push_back(fmt::format("mesh '{}': {}", mesh.name, describe_near_edges(edges)));
 }
 
 bool has_texture(const Material& material) {
@@ -110,7 +118,7 @@ std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSett
                                        ImageSettings::kLeastNoiseSamples, image.spp));
     warn_of_darkness(scene, warnings);
     std::set<std::pair<uint32_t, uint32_t>> pairs;
-    std::set<uint32_t> meshes, read_meshes;
+    std::set<uint32_t> meshes, read_meshes, joined_meshes;
     std::set<std::pair<uint32_t, int>> read_sets;
     std::vector<std::vector<int>> uv_sets; // of materials
     for (const Material& material : scene.materials) uv_sets.push_back(list_uv_sets(material));
@@ -128,8 +136,11 @@ std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSett
                         uv_sets[object.material].end() &&
                     read_sets.insert({object.mesh, set.number}).second)
                     warn_of_faces_without_set(scene.meshes[object.mesh], set, warnings);
-        if (object.displacement == kNoIndex) continue;
         const Mesh& mesh = scene.meshes[object.mesh];
+        const bool is_joined =
+            object.displacement != kNoIndex || mesh.subdivision.scheme != SubdivisionScheme::none;
+        if (is_joined && joined_meshes.insert(object.mesh).second) warn_of_near_edges(mesh, warnings);
+        if (object.displacement == kNoIndex) continue;
         if (pairs.insert({object.mesh, object.displacement}).second)
             warn_of_tiles(mesh, scene.displacements[object.displacement], warnings);
         if (meshes.insert(object.mesh).second) warn_of_creases(mesh, warnings);

@@ -150,6 +150,8 @@ void validate_mesh(const Mesh& mesh, size_t index) {
     check_further_uvs(where, mesh, corners);
     for (size_t i = 0; i < mesh.normals.size(); ++i)
         if (!is_finite(mesh.normals[i])) fail(where, fmt::format("normal {} is not finite", i));
+    if (mesh.weld && !(std::isfinite(*mesh.weld) && *mesh.weld >= 0))
+        fail(where, fmt::format("weld is {}", *mesh.weld), "it is a distance of 0 or more");
     const int level = mesh.subdivision.level;
     if (level != kAutoSubdivisionLevel && (level < 0 || level > kMaxSubdivisionLevel))
         fail(where, fmt::format("subdivision level {} is neither automatic nor in [0, {}]", level,

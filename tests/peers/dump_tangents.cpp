@@ -11,7 +11,7 @@ int main(int argument_count, char** arguments) {
     if (argument_count != 2) return std::fputs("usage: dump_tangents FILE.obj\n", stderr), 2;
     try {
         relief::Polygons polygons =
-            relief::make_polygons(relief::load_mesh(arguments[1]), relief::Welding::equal_points);
+            relief::make_polygons(relief::load_mesh(arguments[1]), relief::Welding::joined_points);
         relief::add_mikk_tangents(polygons, {}, relief::FrameLengths::absolute);
         for (const std::array<float, 4>& t : polygons.tangents)
             std::printf("%.9g %.9g %.9g %g\n", t[0], t[1], t[2], t[3]);

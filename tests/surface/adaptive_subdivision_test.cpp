@@ -30,7 +30,7 @@ struct Adapted {
 
     Adapted(const Mesh& mesh, const BaseTolerance& tolerance, BasePatches patches_wanted,
             const DisplacementChange* change)
-        : polygons(make_polygons(mesh, Welding::equal_points)),
+        : polygons(make_polygons(mesh, Welding::joined_points)),
           source(polygons, mesh.subdivision),
           refined(refine_adaptively(source, polygons, {patches_wanted, tolerance, change, false}, reserve)),
           patches(make_limit_patches(source, refined)) {}
@@ -290,7 +290,7 @@ TEST(AutomaticLevels, quads_that_are_cut_beside_exact_ones_have_the_curves_of_th
 TEST(AutomaticLevels, odd_quads_are_joined_with_each_other_or_with_a_boundary) {
     for (const Shape shape : {Shape::cube, Shape::grid}) {
         const Mesh mesh = make_automatic(shape);
-        const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+        const Polygons polygons = make_polygons(mesh, Welding::joined_points);
         const Cage cage = SubdivisionMesh(polygons, mesh.subdivision).cage();
         for (size_t first = 0; first < cage.is_sharp.size(); ++first) {
             std::vector<uint8_t> is_split(cage.is_sharp.size());
@@ -316,7 +316,7 @@ Mesh make_warped_torus(uint32_t n, float warp) {
 
 TEST(AutomaticLevels, patches_have_the_limit_uvs_at_their_points) {
     const Mesh mesh = make_warped_torus(8, 0.02f);
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
     const SubdivisionMesh source(polygons, mesh.subdivision);
     BaseReserve reserve;
     const RefinedMesh refined =

@@ -38,7 +38,7 @@ bool is_closed(const Polygons& polygons) {
 }
 
 TEST(DegenerateFaces, a_sliver_goes_into_the_edge_of_its_neighbour) {
-    const Polygons polygons = make_polygons(make_sliver_mesh(), Welding::equal_points);
+    const Polygons polygons = make_polygons(make_sliver_mesh(), Welding::joined_points);
     EXPECT_EQ(polygons.face_count(), 5u);
     EXPECT_TRUE(is_closed(polygons));
     // The face c a e has become c b a e, with the uv of b between those of c and a.
@@ -56,7 +56,7 @@ TEST(DegenerateFaces, faces_that_are_a_line_or_a_point_are_left_out) {
         mesh.uv_indices.push_back(0);
     }
     mesh.face_sizes.insert(mesh.face_sizes.end(), 2, 3);
-    EXPECT_TRUE(is_closed(make_polygons(mesh, Welding::equal_points)));
+    EXPECT_TRUE(is_closed(make_polygons(mesh, Welding::joined_points)));
     const DegenerateFaces faces = find_degenerate_faces(mesh);
     EXPECT_EQ(faces.count, 3u);
     EXPECT_EQ(faces.first, 2u);
@@ -75,7 +75,7 @@ TEST(DegenerateFaces, split_points_of_equal_position_are_one_edge) {
 TEST(DegenerateFaces, a_mesh_of_nothing_else_is_refused) {
     Mesh mesh = make_sliver_mesh();
     mesh.face_sizes = {3}, mesh.position_indices = {2, 1, 0}, mesh.uv_indices = {0, 0, 0};
-    EXPECT_THROW(make_polygons(mesh, Welding::equal_points), Error);
+    EXPECT_THROW(make_polygons(mesh, Welding::joined_points), Error);
 }
 
 } // namespace

@@ -16,7 +16,7 @@ constexpr double kPlaces[] = {0, 0.004, 0.11, 0.25, 0.5, 0.63, 0.97, 1};
 
 TEST(LimitFace, positions_and_derivatives_are_those_of_opensubdiv) {
     const Mesh mesh = test::make_fine_cube();
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
     const SubdivisionMesh source(polygons, mesh.subdivision);
     const test::LimitReference reference(mesh);
     for (uint32_t number = 0; number < polygons.face_count(); ++number) {
@@ -40,7 +40,7 @@ TEST(LimitFace, positions_and_derivatives_are_those_of_opensubdiv) {
 
 TEST(LimitFace, is_bicubic_in_cells_apart_from_irregular_corners) {
     const Mesh mesh = test::make_fine_cube();
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
     const SubdivisionMesh source(polygons, mesh.subdivision);
     const auto make_place = [](uint32_t face, double low, double high) {
         return QuadPlace{face, 0, {{{low, low}, {high, low}, {high, high}, {low, high}}}};
@@ -59,7 +59,7 @@ TEST(LimitFace, is_bicubic_in_cells_apart_from_irregular_corners) {
 
 TEST(LimitFace, derivatives_are_the_slopes_of_positions) {
     const Mesh mesh = test::make_fine_cube();
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
     const SubdivisionMesh source(polygons, mesh.subdivision);
     constexpr double kStep = 1e-4;
     for (uint32_t number = 0; number < polygons.face_count(); ++number) {
@@ -82,7 +82,7 @@ TEST(LimitFace, derivatives_are_the_slopes_of_positions) {
 
 TEST(LimitFace, uvs_beside_seams_are_those_of_a_finer_level) {
     Mesh mesh = test::make_fine_cube();
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
     const SubdivisionMesh source(polygons, mesh.subdivision);
     mesh.subdivision.level = 3;
     SubdivisionMesh finer(polygons, mesh.subdivision);

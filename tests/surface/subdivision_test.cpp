@@ -27,7 +27,7 @@ constexpr Shape kOpenShapes[] = {Shape::grid,         Shape::sharp_corner_grid,
 /// What make_surface goes through, with the places of the patches on the mesh.
 struct Subdivided {
     explicit Subdivided(const Mesh& mesh)
-        : polygons(make_polygons(mesh, Welding::equal_points)),
+        : polygons(make_polygons(mesh, Welding::joined_points)),
           source(polygons, mesh.subdivision),
           refined(make_refined(source)),
           patches(make_limit_patches(source, refined)) {}

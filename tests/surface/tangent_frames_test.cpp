@@ -43,7 +43,7 @@ Mesh make_reference_mesh() {
 }
 
 TEST(MikkTangents, are_those_of_blender) {
-    Polygons polygons = make_polygons(make_reference_mesh(), Welding::equal_points);
+    Polygons polygons = make_polygons(make_reference_mesh(), Welding::joined_points);
     add_mikk_tangents(polygons, {}, FrameLengths::absolute);
     ASSERT_EQ(polygons.tangents.size(), std::size(test::kMikkCorners));
     for (size_t k = 0; k < polygons.tangents.size(); ++k) {

@@ -8,7 +8,7 @@ from pxr import Usd, UsdGeom
 
 import relief
 
-from .context import Context, to_array
+from .context import Context, is_number, to_array
 from .corners import (Faces, compute_creased_normals, compute_normals, find_next, have_area, index_corners, make_faces,
                       weld)
 from .refine import Cage, refine
@@ -224,6 +224,15 @@ def make_further_uvs(context: Context, raw: RawMesh, part: Faces, names: tuple) 
     return found
 
 
+def read_weld(context: Context, prim: Usd.Prim) -> float | None:
+    """As noted on the prim."""
+    attribute = prim.GetAttribute("relief:weld")
+    value = attribute.Get() if attribute else None
+    if value is not None and not (is_number(value) and 0 <= value < np.inf):
+        context.fail(prim, f"relief:weld is {value!r}", "it has to be a distance of 0 or more")
+    return None if value is None else float(value)
+
+
 def make_mesh(context: Context, raw: RawMesh, part: Faces, uv_names: tuple, with_normals: bool) -> relief.Mesh:
     """One part of a mesh, or the whole. `uv_names`: of its own uvs, then of further sets. `with_normals`: one normal for each
     point of the whole mesh."""
@@ -240,6 +249,9 @@ def make_mesh(context: Context, raw: RawMesh, part: Faces, uv_names: tuple, with
     elif with_normals and subdivision is None:
         keys.update(normals=compute_normals(raw.positions, raw.faces).astype(np.float32),
                     normal_indices=part.points.astype(np.uint32))
+    weld = read_weld(context, raw.prim)
+    if weld is not None:
+        keys["weld"] = weld
     positions, points, creases = raw.positions, part.points, raw.creases
     if len(part.sizes) < len(raw.faces.sizes):
         used, points = np.unique(points, return_inverse=True)

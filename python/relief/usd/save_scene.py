@@ -124,6 +124,8 @@ def write_mesh(writer: Writer, name: str, keys: dict) -> str:
     mesh.CreateExtentAttr(Vt.Vec3fArray.FromNumpy(np.stack([positions.min(0), positions.max(0)])))
     write_uvs(writer, prim, arrays)
     write_subdivision(mesh, keys.get("subdivision", {}), arrays)
+    if "weld" in keys:
+        set_attribute(prim, "relief:weld", float(keys["weld"]))
     if arrays.normals is not None and len(arrays.normals):
         normals = UsdGeom.PrimvarsAPI(prim).CreatePrimvar("normals", Sdf.ValueTypeNames.Normal3fArray, UsdGeom.Tokens.faceVarying)
         normals.Set(Vt.Vec3fArray.FromNumpy(np.array(arrays.normals, np.float32)))

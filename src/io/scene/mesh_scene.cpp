@@ -100,6 +100,7 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
     Subdivision& subdivision = scene.meshes.front().subdivision;
     if (options.subdivision) subdivision.scheme = parse_word<SubdivisionScheme>(*options.subdivision);
     if (options.subdivision_level) subdivision.level = *options.subdivision_level;
+    scene.meshes.front().weld = options.weld;
     if (!options.displacement_map.empty()) add_map(scene, options, assets);
     const Vec3f view = place_camera(scene);
     if (options.environment.empty()) {

@@ -1,6 +1,7 @@
 #include "io/scene/scene_content.h"
 
 #include <array>
+#include <bit>
 #include <set>
 
 #include "relief/io.h"
@@ -32,6 +33,7 @@ uint64_t hash_mesh(const Mesh& mesh) {
         hash.add(std::array{uint32_t(subdivision.scheme), uint32_t(subdivision.level),
                             uint32_t(subdivision.uv), uint32_t(subdivision.boundary),
                             uint32_t(subdivision.creases)});
+    if (mesh.weld) hash.add(std::array{uint32_t(1), std::bit_cast<uint32_t>(*mesh.weld)});
     return hash.value();
 }
 

@@ -98,6 +98,7 @@ Json write_mesh_scene(const Scene& scene, const MeshSceneOptions& options, const
         subdivision["scheme"] = *options.subdivision;
         if (options.subdivision_level) subdivision["level"] = *options.subdivision_level;
     }
+    if (options.weld) root["meshes"]["mesh"]["weld"] = to_json(*options.weld);
     root["objects"] = Json::array({object});
     if (!options.environment.empty()) root["environment"]["file"] = move(options.environment);
     return root;

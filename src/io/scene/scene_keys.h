@@ -43,7 +43,7 @@ inline constexpr auto kInputTexture = make_keys("file", "factor", "filter", "cha
 inline constexpr auto kDisplacement =
     make_keys("type", "file", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale",
               "flip_v", "wrap", "dilate", "filter", "dequantize", "autobump");
-inline constexpr auto kMesh = make_keys("file", "uv_set", "animation", "time", "subdivision");
+inline constexpr auto kMesh = make_keys("file", "uv_set", "animation", "time", "subdivision", "weld");
 inline constexpr auto kSubdivision = make_keys("scheme", "level", "uv", "boundary", "creases");
 inline constexpr auto kObject =
     make_keys("name", "mesh", "displacement", "material", "transform", "instances", "shadow_catcher");

@@ -87,6 +87,7 @@ Mesh read_mesh(const JsonNode& node, const std::string& name, AssetCache& assets
     if (!assets.find_kept(name)) mesh = read_polygons(node, assets, reader, uv_sets);
     mesh.name = name;
     if (const auto subdivision = node.find("subdivision")) read_subdivision(*subdivision, mesh);
+    if (const auto weld = node.find("weld")) mesh.weld = weld->as_float(0);
     return mesh;
 }
 

@@ -261,6 +261,7 @@ class SceneWriter {
             Json& node = root_["meshes"][mesh_names_.back()];
             node["file"] = file;
             if (has_subdivision(mesh)) node["subdivision"] = write_subdivision(mesh);
+            if (mesh.weld) node["weld"] = to_json(*mesh.weld);
         }
     }
 

@@ -6,6 +6,7 @@
 #include "formulas/frame.h"
 #include "formulas/shading_normal.h"
 #include "math/vec_double.h"
+#include "surface/mesh/join_points.h"
 #include "surface/mesh/mikk_tangents.h"
 
 namespace relief {

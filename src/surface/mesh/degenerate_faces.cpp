@@ -9,6 +9,7 @@
 
 #include "math/vec.h"
 #include "relief/error.h"
+#include "surface/mesh/join_points.h"
 
 namespace relief {
 

@@ -280,7 +280,7 @@ const SubdivisionMesh* get_limit(const SurfaceContext& context) {
 Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const SurfaceContext& context,
                        PyramidCache& pyramids) {
     const std::span<const int> uv_sets = context.uv_sets;
-    Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
+    Polygons polygons = make_polygons(mesh, Welding::joined_points, uv_sets);
     if (polygons.uvs.empty())
         throw Error(ErrorKind::bad_input,
                     {fmt::format("mesh has no uvs, but displacement '{}' needs them", displacement.name),
@@ -317,7 +317,7 @@ Polygons make_plain_polygons(const Mesh& mesh, const SurfaceContext& context, Ba
     const std::span<const int> uv_sets = context.uv_sets;
     if (mesh.subdivision.scheme == SubdivisionScheme::none)
         return cut_to_triangles(make_polygons(mesh, Welding::none, uv_sets));
-    Polygons polygons = make_polygons(mesh, Welding::equal_points, uv_sets);
+    Polygons polygons = make_polygons(mesh, Welding::joined_points, uv_sets);
     if (mesh.subdivision.scheme == SubdivisionScheme::bilinear)
         polygons = cut_concave_faces(std::move(polygons));
     const BaseNeeds needs{BasePatches::bilinear, choose_tolerance(context, polygons), nullptr, false,

@@ -1,9 +1,7 @@
 #include "surface/mesh/polygons.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +9,7 @@
 #include "math/vec.h"
 #include "relief/error.h"
 #include "surface/mesh/degenerate_faces.h"
+#include "surface/mesh/join_points.h"
 
 namespace relief {
 
@@ -93,14 +92,11 @@ void check_face(const Mesh& mesh, const std::string& where, size_t face, size_t 
     }
 }
 
-struct PositionHash {
-    size_t operator()(const Vec3f& p) const {
-        uint64_t hash = std::bit_cast<uint32_t>(p.x) | uint64_t(std::bit_cast<uint32_t>(p.y)) << 32;
-        hash = (hash ^ hash >> 31) * 0x9e3779b97f4a7c15u + std::bit_cast<uint32_t>(p.z);
-        hash = (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
-        return size_t(hash ^ hash >> 32);
-    }
-};
+void check_faces(const Mesh& mesh, const std::string& where) {
+    size_t start = 0;
+    for (size_t face = 0; face < mesh.face_sizes.size(); start += mesh.face_sizes[face], ++face)
+        check_face(mesh, where, face, start);
+}
 
 /// Creases between the points of the polygons; those between points that have become one are gone.
 std::vector<Crease> move_creases(const Mesh& mesh, const std::string& where,
@@ -171,15 +167,6 @@ void add_corner_between(const Polygons& from, uint32_t corner, uint32_t next, co
     to.tangents.push_back(tangent);
 }
 
-std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
-    std::unordered_map<Vec3f, uint32_t, PositionHash> first_at;
-    first_at.reserve(positions.size());
-    std::vector<uint32_t> result(positions.size());
-    for (uint32_t k = 0; k < positions.size(); ++k)
-        result[k] = first_at.try_emplace(positions[k], k).first->second;
-    return result;
-}
-
 Vec3<double> compute_newell_normal(const Polygons& polygons, uint32_t face) {
     const uint32_t start = polygons.starts[face];
     return sum_newell(polygons.face_size(face),
@@ -196,8 +183,9 @@ Polygons make_polygons(const Mesh& mesh, Welding welding, std::span<const int> u
     check_counts(mesh, result.where);
     result.positions = mesh.positions;
     for (Vec3f& p : result.positions) p = p + Vec3f{}; // -0 becomes 0
+    check_faces(mesh, result.where);
     std::vector<uint32_t> representatives;
-    if (welding == Welding::equal_points) representatives = find_equal_points(result.positions);
+    if (welding == Welding::joined_points) representatives = join_points(mesh).representatives;
 
     const std::vector<const UvSet*> wanted = choose_uv_sets(mesh, uv_sets);
     for (const UvSet* set : wanted) result.further_uvs.push_back({set->number, {}});
@@ -207,7 +195,6 @@ Polygons make_polygons(const Mesh& mesh, Welding welding, std::span<const int> u
 
     size_t start = 0;
     for (size_t face = 0; face < mesh.face_sizes.size(); start += mesh.face_sizes[face], ++face) {
-        check_face(mesh, result.where, face, start);
         const uint32_t size = mesh.face_sizes[face];
         result.starts.push_back(uint32_t(result.points.size()));
         for (uint32_t k = 0; k < size; ++k) {

@@ -36,17 +36,14 @@ struct Polygons {
 };
 
 enum class Welding {
-    none,        ///< points stay as the mesh numbers them
-    equal_points ///< points at exactly equal positions become one, as exporters take them apart
+    none,         ///< points stay as the mesh numbers them
+    joined_points ///< points become one that join_points() joins, as exporters take them apart
 };
 
 /// Resolves and checks a mesh; drops repeated corners and faces without area (degenerate_faces.h). `uv_sets`:
 /// which of its further uvs are wanted, where it has them. Throws bad_input with mesh and face: index out of
 /// range, value not finite or beyond 1e18, no face left.
 Polygons make_polygons(const Mesh& mesh, Welding welding, std::span<const int> uv_sets = {});
-
-/// First point at the same position, for each point.
-std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions);
 
 /// One linear Catmull-Clark step without smoothing: a quad per corner of every face, from it to the middles
 /// of its next edge, face and previous edge. Uvs, normals and tangents are interpolated.

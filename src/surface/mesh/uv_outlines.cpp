@@ -51,7 +51,7 @@ Vec2f evaluate_side(const LimitFace& limit, uint32_t size, uint32_t k, double s)
 /// Outlines of the patches at the mesh's level.
 UvOutlines make_patch_outlines(const Mesh& mesh) {
     UvOutlines outlines;
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
     const RefinedMesh refined = SubdivisionMesh(polygons, mesh.subdivision).refine(polygons.where);
     for (const std::array<Vec2f, 4>& uvs : refined.uvs) {
         outlines.uvs.insert(outlines.uvs.end(), uvs.begin(), uvs.end());
@@ -89,7 +89,7 @@ bool has_curved_outlines(const Mesh& mesh) {
 UvOutlines make_uv_outlines(const Mesh& mesh) {
     if (!has_smooth_uvs(mesh)) return make_flat_outlines(mesh);
     if (!has_curved_outlines(mesh)) return make_patch_outlines(mesh);
-    const Polygons polygons = make_polygons(mesh, Welding::equal_points);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
     return make_uv_outlines(SubdivisionMesh(polygons, mesh.subdivision));
 }
 
