@@ -72,6 +72,30 @@ TEST(DegenerateFaces, split_points_of_equal_position_are_one_edge) {
     EXPECT_EQ(make_polygons(mesh, Welding::none).face_size(2), 4u);
 }
 
+/// The edge a c of the tetrahedron has two points on one side, which a row of slivers joins to the other.
+TEST(DegenerateFaces, slivers_beside_each_other_go_into_one_edge) {
+    for (const bool is_fan : {false, true}) {
+        enum : uint32_t { a, b, c, d, e, f };
+        Mesh mesh;
+        mesh.name = "slivers";
+        mesh.positions = {{0, 0, 0}, {1, 0, 0}, {4, 0, 0}, {0, 2, 0}, {0, 0, 2}, {3, 0, 0}};
+        mesh.position_indices = {a, b, d, b, f, d, f, c, d, c, a, e, a, d, e, c, e, d};
+        const std::vector<uint32_t> slivers =
+            is_fan ? std::vector<uint32_t>{c, f, a, f, b, a} : std::vector<uint32_t>{c, b, a, c, f, b};
+        mesh.position_indices.insert(mesh.position_indices.end(), slivers.begin(), slivers.end());
+        mesh.face_sizes.assign(8, 3);
+        for (const uint32_t index : mesh.position_indices)
+            mesh.uv_indices.push_back(uint32_t(mesh.uvs.size())),
+                mesh.uvs.push_back({mesh.positions[index].x, 0});
+        const Polygons polygons = make_polygons(mesh, Welding::joined_points);
+        EXPECT_TRUE(is_closed(polygons)) << is_fan;
+        ASSERT_EQ(polygons.face_count(), 6u);
+        ASSERT_EQ(polygons.face_size(3), 5u);
+        for (uint32_t corner = 0; corner < polygons.points.size(); ++corner)
+            EXPECT_NEAR(polygons.uvs[corner].x, polygons.positions[polygons.points[corner]].x, 1e-6f);
+    }
+}
+
 TEST(DegenerateFaces, a_mesh_of_nothing_else_is_refused) {
     Mesh mesh = make_sliver_mesh();
     mesh.face_sizes = {3}, mesh.position_indices = {2, 1, 0}, mesh.uv_indices = {0, 0, 0};

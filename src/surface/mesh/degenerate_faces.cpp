@@ -1,9 +1,11 @@
 #include "surface/mesh/degenerate_faces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -33,59 +35,119 @@ std::vector<uint8_t> mark_degenerate(const Polygons& polygons) {
     return marks;
 }
 
-/// Decides which corners of dropped faces go into edges of faces that stay.
-class Splicer {
+/// Corners of polygons, to which others are added between two of them.
+class CornerList {
   public:
-    Splicer(const Polygons& polygons, const std::vector<uint8_t>& is_dropped)
-        : polygons_(polygons), numbers_(find_equal_points(polygons.positions)) {
-        for (uint32_t face = 0; face < polygons.face_count(); ++face)
-            for (uint32_t k = 0; !is_dropped[face] && k < polygons.face_size(face); ++k)
-                corner_of_edge_.try_emplace(get_edge(face, k), polygons.starts[face] + k);
-    }
-
-    void splice(uint32_t face) {
-        const uint32_t size = polygons_.face_size(face);
-        if (size < 3) return;
-        uint32_t longest = 0;
-        for (uint32_t k = 1; k < size; ++k)
-            if (get_length(face, k) > get_length(face, longest)) longest = k;
-        const auto [end, begin] = get_edge(face, longest);
-        const auto neighbour = corner_of_edge_.find({begin, end});
-        if (neighbour == corner_of_edge_.end()) return;
-        const double whole = get_length(face, longest);
-        std::vector<PointOnWay> points;
-        double reached = 0;
-        for (uint32_t k = longest + 1; k + 1 < longest + size; ++k) {
-            reached += get_length(face, k % size);
-            if (!(reached < whole)) return; // the corners turn back: no order along the edge
-            points.push_back(
-                {polygons_.points[polygons_.starts[face] + (k + 1) % size], float(reached / whole)});
+    explicit CornerList(Polygons& polygons) : polygons_(polygons) {
+        for (uint32_t face = 0; face < polygons.face_count(); ++face) {
+            const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
+            for (uint32_t k = 0; k < size; ++k)
+                next_.push_back(start + (k + 1) % size), faces_.push_back(face);
+            sizes_.push_back(size);
         }
-        points_of_corner_[neighbour->second] = std::move(points);
     }
 
-    /// What goes between a corner and the next one of its face.
-    const std::vector<PointOnWay>& find(uint32_t corner) const {
-        static const std::vector<PointOnWay> kNone;
-        const auto found = points_of_corner_.find(corner);
-        return found == points_of_corner_.end() ? kNone : found->second;
+    uint32_t next(uint32_t corner) const { return next_[corner]; }
+    uint32_t face(uint32_t corner) const { return faces_[corner]; }
+    uint32_t size(uint32_t face) const { return sizes_[face]; }
+    uint32_t count() const { return uint32_t(next_.size()); }
+
+    /// Puts a point between `before` and `after`, the corner behind it, with attributes at `part` of the way
+    /// from corner `begin` to corner `end`. Returns the new corner.
+    uint32_t insert(uint32_t before, uint32_t point, uint32_t begin, uint32_t end, float part) {
+        add_corner_between(polygons_, begin, end, {point, part}, polygons_);
+        const auto corner = uint32_t(next_.size());
+        next_.push_back(next_[before]), next_[before] = corner;
+        faces_.push_back(faces_[before]);
+        ++sizes_[faces_[before]];
+        return corner;
     }
 
   private:
-    uint32_t get_point(uint32_t face, uint32_t k) const {
-        return polygons_.points[polygons_.starts[face] + k % polygons_.face_size(face)];
-    }
-    Edge get_edge(uint32_t face, uint32_t k) const {
-        return {numbers_[get_point(face, k)], numbers_[get_point(face, k + 1)]};
-    }
-    double get_length(uint32_t face, uint32_t k) const {
-        return length(polygons_.positions[get_point(face, k + 1)] - polygons_.positions[get_point(face, k)]);
+    Polygons& polygons_;
+    std::vector<uint32_t> next_, faces_; ///< by corner
+    std::vector<uint32_t> sizes_;        ///< by face
+};
+
+/// Gives corners of faces without area to the neighbours across their longest edges, which may be such faces
+/// themselves.
+class Splicer {
+  public:
+    Splicer(Polygons& polygons, const std::vector<uint8_t>& is_dropped)
+        : polygons_(polygons),
+          is_dropped_(is_dropped),
+          numbers_(find_equal_points(polygons.positions)),
+          corners_(polygons) {
+        // Neighbours that stay win over those that are dropped.
+        for (const uint8_t pass : {0, 1})
+            for (uint32_t corner = 0; corner < corners_.count(); ++corner)
+                if (is_dropped[corners_.face(corner)] == pass)
+                    corner_of_edge_.try_emplace(get_edge(corner), corner);
     }
 
-    const Polygons& polygons_;
+    void splice() {
+        std::vector<uint32_t> open;
+        for (uint32_t face = 0; face < is_dropped_.size(); ++face)
+            if (is_dropped_[face]) open.push_back(face);
+        // What a face has taken over may give it another longest edge, with a neighbour.
+        for (size_t before = open.size() + 1; open.size() < before;) {
+            before = open.size();
+            std::erase_if(open, [this](uint32_t face) { return splice(face); });
+        }
+    }
+
+    const CornerList& corners() const { return corners_; }
+
+  private:
+    /// False where the face stays apart: there is no neighbour, or no order along the edge.
+    bool splice(uint32_t face) {
+        if (corners_.size(face) < 3) return true;
+        const uint32_t longest = find_longest(face);
+        const auto [end, begin] = get_edge(longest);
+        const auto neighbour = corner_of_edge_.find({begin, end});
+        if (neighbour == corner_of_edge_.end() || corners_.face(neighbour->second) == face) return false;
+        const uint32_t from = neighbour->second, to = corners_.next(from);
+        const double whole = get_length(longest);
+        double reached = 0;
+        std::vector<std::pair<uint32_t, float>> points;
+        for (uint32_t corner = corners_.next(longest); corners_.next(corner) != longest;) {
+            reached += get_length(corner);
+            if (!(reached < whole)) return false; // the corners turn back
+            corner = corners_.next(corner);
+            points.emplace_back(polygons_.points[corner], float(reached / whole));
+        }
+        // Both are sides of the shared edge, which is gone.
+        corner_of_edge_.erase({begin, end}), corner_of_edge_.erase({end, begin});
+        uint32_t last = from;
+        for (const auto& [point, part] : points) {
+            const uint32_t added = corners_.insert(last, point, from, to, part);
+            corner_of_edge_[get_edge(last)] = last;
+            last = added;
+        }
+        corner_of_edge_[get_edge(last)] = last;
+        return true;
+    }
+
+    uint32_t find_longest(uint32_t face) const {
+        const uint32_t start = polygons_.starts[face];
+        uint32_t longest = start;
+        for (uint32_t corner = corners_.next(start); corner != start; corner = corners_.next(corner))
+            if (get_length(corner) > get_length(longest)) longest = corner;
+        return longest;
+    }
+    Edge get_edge(uint32_t corner) const {
+        return {numbers_[polygons_.points[corner]], numbers_[polygons_.points[corners_.next(corner)]]};
+    }
+    double get_length(uint32_t corner) const {
+        return length(polygons_.positions[polygons_.points[corners_.next(corner)]] -
+                      polygons_.positions[polygons_.points[corner]]);
+    }
+
+    Polygons& polygons_;
+    const std::vector<uint8_t>& is_dropped_;
     std::vector<uint32_t> numbers_;
-    std::map<Edge, uint32_t> corner_of_edge_;
-    std::map<uint32_t, std::vector<PointOnWay>> points_of_corner_;
+    CornerList corners_;
+    std::map<Edge, uint32_t> corner_of_edge_; ///< by its two points in the order of the face
 };
 
 } // namespace
@@ -130,20 +192,17 @@ void drop_degenerate_faces(Polygons& polygons) {
                                  polygons.source_faces[size_t(first - is_dropped.begin())]),
                      "remove degenerate faces from the mesh: no other is left"});
     Splicer splicer(polygons, is_dropped);
-    for (uint32_t face = 0; face < polygons.face_count(); ++face)
-        if (is_dropped[face]) splicer.splice(face);
+    splicer.splice();
+    const CornerList& corners = splicer.corners();
     Polygons kept;
     for (const CornerUvs& set : polygons.further_uvs) kept.further_uvs.push_back({set.number, {}});
     for (uint32_t face = 0; face < polygons.face_count(); ++face) {
         if (is_dropped[face]) continue;
-        const uint32_t start = polygons.starts[face], size = polygons.face_size(face);
         begin_face(polygons, face, kept);
-        for (uint32_t k = 0; k < size; ++k) {
-            const uint32_t next = start + (k + 1) % size;
-            add_corner(polygons, start + k, kept);
-            for (const PointOnWay& point : splicer.find(start + k))
-                add_corner_between(polygons, start + k, next, point, kept);
-        }
+        const uint32_t start = polygons.starts[face];
+        uint32_t corner = start;
+        do add_corner(polygons, corner, kept), corner = corners.next(corner);
+        while (corner != start);
     }
     kept.starts.push_back(uint32_t(kept.points.size()));
     kept.where = std::move(polygons.where), kept.positions = std::move(polygons.positions);

@@ -21,7 +21,8 @@ bool has_area(std::span<const Vec3f> corners);
 DegenerateFaces find_degenerate_faces(const Mesh& mesh);
 
 /// Removes them. What was closed stays closed: where corners lie on a line, the neighbour across the longest
-/// edge takes those in between, with interpolated attributes. Throws bad_input where no face is left.
+/// edge takes those in between, with interpolated attributes; of several such faces in a row the last one's.
+/// Throws bad_input where no face is left.
 void drop_degenerate_faces(Polygons& polygons);
 
 } // namespace relief
