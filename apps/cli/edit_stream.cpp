@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "base/text_reading.h"
 #include "common/report.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -29,8 +30,8 @@ Value read_object(const std::string& text) {
     Value json;
     try {
         json = read_json(text);
-    } catch (const Error&) {
-        refuse("this is no JSON", kForm);
+    } catch (const Error& error) {
+        refuse(error.hint().empty() ? "this is no JSON" : error.message(), kForm);
     }
     if (json.kind() != Value::Kind::record) refuse("an edit is one JSON object a line", kForm);
     for (const Member& member : json.members())
@@ -59,7 +60,7 @@ EditStream::EditStream(std::istream& lines, std::string source, std::string only
 std::optional<EditLine> EditStream::next() {
     std::string text;
     do {
-        if (!std::getline(lines_, text)) return std::nullopt;
+        if (!read_line(lines_, text)) return std::nullopt;
         ++line_;
     } while (text.find_first_not_of(" \t\r") == std::string::npos);
     using Clock = std::chrono::steady_clock;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/text_reading.h"
 #include "common/report.h"
 #include "relief/error.h"
 
@@ -87,8 +88,13 @@ std::string write_json(const Value& value, std::optional<int> indent) {
 }
 
 Value read_json(const std::string& text) {
+    if (is_wide_text(text)) throw Error(ErrorKind::bad_input, {kWideText, "JSON", kWideTextHint});
+    if (find_deep_nesting(text))
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("arrays and objects are nested more than {} levels deep", kMostNesting),
+                     "JSON", "write them less deep"});
     try {
-        return make_value(Json::parse(text));
+        return make_value(Json::parse(skip_byte_order_mark(text)));
     } catch (const Json::exception& failure) {
         throw Error(ErrorKind::bad_input, {failure.what(), "JSON", ""});
     }

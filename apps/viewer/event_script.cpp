@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "base/text_reading.h"
 #include "common/values.h"
 #include "relief/error.h"
 
@@ -169,7 +170,7 @@ std::vector<ScriptLine> read_script(std::istream& lines, const std::string& sour
     check(lines.good());
     std::vector<ScriptLine> script;
     std::string text;
-    for (size_t number = 1; std::getline(lines, text); ++number) {
+    for (size_t number = 1; read_line(lines, text); ++number) {
         const size_t start = text.find_first_not_of(" \t\r");
         if (start == std::string::npos || text.compare(start, 2, "//") == 0) continue;
         try {

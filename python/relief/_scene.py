@@ -156,11 +156,11 @@ class Scene:
         path = os.fspath(file)
         scene = cls()
         try:
-            with open(path, encoding="utf-8") as stream:
+            with open(path, encoding="utf-8-sig") as stream:
                 root = json.loads(strip_comments(stream.read()))
             if not _has_sections(root):
                 raise ValueError("this is not a scene of version 1")
-        except (OSError, ValueError):
+        except (OSError, ValueError, RecursionError):
             _relief.load_scene(path)  # says what is wrong, and where
             raise
         scene.folder = os.path.dirname(os.path.abspath(path))

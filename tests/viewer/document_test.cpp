@@ -171,6 +171,22 @@ TEST(EventScript, lines_become_steps) {
     EXPECT_TRUE(std::holds_alternative<QuitStep>(lines[6].step));
 }
 
+TEST(EventScript, has_a_mark_and_any_ends_of_lines_and_little_nesting) {
+    for (const std::string end : {"\n", "\r", "\r\n"}) {
+        std::istringstream text("\xef\xbb\xbf// first" + end + R"({"quit": true})" + end);
+        const std::vector<ScriptLine> lines = read_script(text, "demo.jsonl");
+        ASSERT_EQ(lines.size(), 1u);
+        EXPECT_EQ(lines[0].number, 2u);
+    }
+    std::istringstream deep("{\"set\": " + std::string(1000000, '['));
+    try {
+        read_script(deep, "demo.jsonl");
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_NE(error.message().find("levels deep"), std::string::npos) << error.what();
+    }
+}
+
 TEST_F(FileWatchTest, a_script_that_cannot_be_read_is_refused) {
     for (const std::filesystem::path& file : {folder_, folder_ / "missing.jsonl"}) {
         std::ifstream stream(file);

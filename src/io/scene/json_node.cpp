@@ -7,24 +7,22 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "base/text_reading.h"
 
 namespace relief {
 
 namespace {
 
-struct LineAndColumn {
-    size_t line = 1, column = 1;
-};
+std::string describe_place(std::string_view text, const std::string& file, size_t byte) {
+    const TextPlace place = find_place(text, byte);
+    return fmt::format("{}, line {}, column {}", file, place.line, place.column);
+}
 
-LineAndColumn locate(std::string_view text, size_t byte) {
-    LineAndColumn place;
-    for (size_t i = 0; i < std::min(byte, text.size()); ++i) {
-        if (text[i] == '\n')
-            ++place.line, place.column = 1;
-        else
-            ++place.column;
-    }
-    return place;
+void refuse_deep_nesting(std::string_view text, const std::string& file) {
+    if (const std::optional<size_t> byte = find_deep_nesting(text))
+        throw Error(ErrorKind::bad_input,
+                    {fmt::format("arrays and objects are nested more than {} levels deep", kMostNesting),
+                     describe_place(text, file, *byte), "write them less deep: the file is damaged"});
 }
 
 /// The part of the parser's message that says what is wrong, without its own error number and position.
@@ -119,17 +117,18 @@ std::string describe_type(const Json& value) {
 } // namespace
 
 Json parse_json(std::string_view text, const std::string& file) {
+    if (is_wide_text(text)) throw Error(ErrorKind::bad_input, {kWideText, file, kWideTextHint});
+    text = skip_byte_order_mark(text);
+    refuse_deep_nesting(text, file);
     Json document;
     DocumentBuilder builder(document);
     try {
         Json::sax_parse(text.begin(), text.end(), &builder, Json::input_format_t::json, true, true);
     } catch (const Json::parse_error& error) {
         // The parser counts the byte that it could not accept, starting from 1.
-        const LineAndColumn place = locate(text, error.byte > 0 ? error.byte - 1 : 0);
-        throw Error(ErrorKind::bad_input,
-                    {"broken JSON: " + strip_parser_prefix(error.what()),
-                     fmt::format("{}, line {}, column {}", file, place.line, place.column),
-                     hint_at_syntax(error.what())});
+        throw Error(ErrorKind::bad_input, {"broken JSON: " + strip_parser_prefix(error.what()),
+                                           describe_place(text, file, error.byte > 0 ? error.byte - 1 : 0),
+                                           hint_at_syntax(error.what())});
     } catch (const Json::exception& error) {
         throw Error(ErrorKind::bad_input, {"broken JSON: " + strip_parser_prefix(error.what()), file, ""});
     }
