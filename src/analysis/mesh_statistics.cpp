@@ -142,6 +142,8 @@ MeshFaults find_mesh_faults(const Mesh& mesh) {
     const auto uv = std::ranges::find_if_not(
         mesh.uvs, [](const Vec2f& value) { return std::isfinite(value.x) && std::isfinite(value.y); });
     if (uv != mesh.uvs.end()) faults.bad_uv = size_t(uv - mesh.uvs.begin());
+    const auto normal = std::ranges::find_if_not(mesh.normals, is_finite);
+    if (normal != mesh.normals.end()) faults.bad_normal = size_t(normal - mesh.normals.begin());
     return faults;
 }
 

@@ -36,12 +36,12 @@ struct MeshUvs {
     double overlap = 0;        ///< area that several faces share, over the area that any covers; [0, 1]
 };
 
-/// How often each index of a mesh points nowhere, and the first vertex that is not finite.
+/// How often each index of a mesh points nowhere, and the first value of each kind that is not finite.
 struct MeshFaults {
     size_t bad_indices = 0;
-    std::optional<size_t> bad_position, bad_uv;
+    std::optional<size_t> bad_position, bad_uv, bad_normal;
     bool has_bad_counts = false; ///< corners and indices differ in number, or a face has fewer than three
-    bool is_sound() const { return bad_indices == 0 && !bad_position && !bad_uv && !has_bad_counts; }
+    bool is_sound() const { return bad_indices == 0 && !bad_position && !bad_uv && !bad_normal && !has_bad_counts; }
 };
 
 /// What of a mesh is displaced, for people: "catmark, level 2: 4 x 4 patches a quad, ...".

@@ -6,10 +6,12 @@
 #include "analysis/mesh_statistics.h"
 #include "inspect/facts.h"
 #include "math/box.h"
+#include "relief/error.h"
 #include "relief/inspect.h"
 #include "scene/face_uvs.h"
 #include "scene/uv_sets.h"
 #include "surface/mesh/degenerate_faces.h"
+#include "surface/mesh/polygons.h"
 
 namespace relief {
 
@@ -25,8 +27,30 @@ void find_faults(const MeshFaults& faults, std::vector<Finding>& findings) {
                   faults.bad_indices);
     if (faults.bad_position)
         add_error(findings, "E-NAN", "vertex {} is not finite; export the mesh again", *faults.bad_position);
+    if (faults.bad_normal)
+        add_error(findings, "E-NAN", "normal {} is not finite; export the mesh again", *faults.bad_normal);
     if (faults.bad_uv)
         add_error(findings, "E-NAN", "uv {} is not finite; unwrap the mesh again", *faults.bad_uv);
+}
+
+/// What a render refuses beside that.
+void find_refusal(const Mesh& mesh, std::vector<Finding>& findings) {
+    try {
+        validate_mesh(mesh);
+        make_polygons(mesh, Welding::none);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::bad_input) throw;
+        add_error(findings, "E-SCENE", "{}", error.what());
+    }
+}
+
+void find_faces_without_area(const Mesh& mesh, std::vector<Finding>& findings) {
+    const DegenerateFaces faces = find_degenerate_faces(mesh);
+    if (faces.count == 0 || faces.count == mesh.face_sizes.size()) return;
+    add_warning(findings, "W-AREA",
+                "{} of {} faces have no area and are left out, the first is face {}: remove them, or merge "
+                "their corners",
+                faces.count, mesh.face_sizes.size(), faces.first);
 }
 
 void find_face_mistakes(const Mesh& mesh, const MeshShape& shape, std::vector<Finding>& findings) {
@@ -48,20 +72,6 @@ void find_face_mistakes(const Mesh& mesh, const MeshShape& shape, std::vector<Fi
                  "{} of {} faces are not quads: displaced, the whole mesh is refined once to quads; plain, "
                  "n-gons are cut into triangles",
                  shape.triangles + shape.others, shape.faces());
-}
-
-void find_degenerate_mistakes(const Mesh& mesh, std::vector<Finding>& findings) {
-    const DegenerateFaces faces = find_degenerate_faces(mesh);
-    if (faces.count == 0) return;
-    if (faces.count == mesh.face_sizes.size()) {
-        add_error(findings, "E-AREA",
-                  "no face has an area: nothing of the mesh can be seen; export it again");
-        return;
-    }
-    add_warning(
-        findings, "W-AREA",
-        "{} of {} faces have no area and are left out, the first is face {}; remove them from the mesh",
-        faces.count, mesh.face_sizes.size(), faces.first);
 }
 
 void find_edge_mistakes(const MeshShape& shape, std::vector<Finding>& findings) {
@@ -272,6 +282,8 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
                         make_count("faces", mesh.face_sizes.size())};
         return result;
     }
+    find_refusal(mesh, result.findings);
+    find_faces_without_area(mesh, result.findings);
     const MeshShape shape = measure_shape(mesh);
     describe_shape(mesh, shape, result);
     if (displacement) add_frame(mesh, *displacement, result);
@@ -295,7 +307,6 @@ Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement) {
     }
     add_uv_sets(mesh, result);
     find_face_mistakes(mesh, shape, result.findings);
-    find_degenerate_mistakes(mesh, result.findings);
     find_edge_mistakes(shape, result.findings);
     return result;
 }

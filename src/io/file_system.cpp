@@ -31,8 +31,19 @@ const char* name_kind(const fs::path& file) {
     return get_lower_extension(file) == ".json" ? "scene file" : "file";
 }
 
+/// Whether a part of a path is the letter of a drive: "C:/maps/a.exr", which a scene file may hold.
+bool find_drive(std::string_view path) {
+    const size_t colon = path.find(":/");
+    const auto is_letter = [&](size_t k) { return std::isalpha(static_cast<unsigned char>(path[k])) != 0; };
+    return colon != std::string_view::npos && colon > 0 && is_letter(colon - 1) &&
+           (colon == 1 || path[colon - 2] == '/');
+}
+
 std::string suggest_file(const fs::path& file) {
     if (file.filename().string().find('*') != std::string::npos) return "no file has a name of this pattern";
+    const std::string text = file.string();
+    if (find_drive(text))
+        return "it is on a drive of Windows: write its path relative to the scene file, with /";
     std::error_code code;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, code))
@@ -81,6 +92,14 @@ std::string get_lower_extension(const fs::path& file) {
     std::string extension = file.extension().string();
     for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
     return extension;
+}
+
+fs::path find_with_slashes(const fs::path& file) {
+    std::string text = file.string();
+    std::error_code code;
+    if (text.find('\\') == std::string::npos || fs::exists(file, code)) return file;
+    std::replace(text.begin(), text.end(), '\\', '/');
+    return text;
 }
 
 void require_file(const fs::path& file) {

@@ -9,6 +9,10 @@ namespace relief {
 /// Lower-case extension with its dot: ".exr".
 std::string get_lower_extension(const std::filesystem::path& file);
 
+/// The same path with `/` for each `\`, as a program on Windows writes it, where the path as it is names
+/// nothing.
+std::filesystem::path find_with_slashes(const std::filesystem::path& file);
+
 /// Throws bad_input unless the path names a regular file; the hint names a similar file of the folder.
 void require_file(const std::filesystem::path& file);
 

@@ -121,7 +121,7 @@ TEST_F(ChildReader, programs_that_leave_no_mesh_end_in_a_message) {
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }, ErrorKind::failed), "cannot be started");
     options.reader.program = make_program(write("silent", "#!/bin/sh\nexit 4\n"));
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }), "ended without a mesh (exit 4)");
-    options.reader.program = make_program(write("noise", "#!/bin/sh\nprintf reliefM2andthensome >&3\n"));
+    options.reader.program = make_program(write("noise", "#!/bin/sh\nprintf reliefM3andthensome >&3\n"));
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }), "ended without a mesh (exit 0)");
     options.reader.program = make_program(write("killed", "#!/bin/sh\nkill -9 $$\n"));
     EXPECT_HAS(message_of([&] { load_mesh(file, options); }), "ended with signal 9 (Killed)");
@@ -158,10 +158,11 @@ Mesh make_full_mesh() {
 
 TEST_F(ChildReader, a_block_holds_all_arrays) {
     const Block block;
-    write_mesh_block(block.descriptor(), make_full_mesh());
+    write_mesh_block(block.descriptor(), make_full_mesh(), {"one", "two\nlines"});
     const MeshBlock read = read_mesh_block(block.descriptor(), 1 << 20);
     ASSERT_EQ(read.content, BlockContent::mesh);
     expect_equal(read.mesh, make_full_mesh());
+    EXPECT_EQ(read.warnings, (std::vector<std::string>{"one", "two?lines"}));
     EXPECT_EQ(read_mesh_block(block.descriptor(), 100).content, BlockContent::nothing) << "too large";
     Mesh without_uvs = make_full_mesh();
     std::ranges::fill(without_uvs.uv_indices, kNoIndex);
@@ -173,12 +174,12 @@ TEST_F(ChildReader, a_block_holds_all_arrays) {
 }
 
 TEST_F(ChildReader, damaged_blocks_count_as_nothing) {
-    constexpr off_t kSizes = 16, kArrays = kSizes + 12 * 8;
+    constexpr off_t kSizes = 16, kArrays = kSizes + 13 * 8;
     const off_t face_sizes = kArrays + 3 * 12 + 2 * 8 + 12, positions = face_sizes + 4;
     const off_t uvs = positions + 12, normals = uvs + 12, creases = normals + 12 + 3 * 16;
     const auto read_damaged = [](off_t place, auto value) {
         const Block block;
-        write_mesh_block(block.descriptor(), make_full_mesh());
+        write_mesh_block(block.descriptor(), make_full_mesh(), {"a warning"});
         block.set(place, value);
         return block.read();
     };

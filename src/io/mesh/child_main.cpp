@@ -76,7 +76,9 @@ std::optional<MeshReadOptions> parse_uv_sets(std::string_view words) {
 /// Leaves the mesh, or why there is none, in the shared memory.
 void leave_mesh(const char* file, const MeshReadOptions& options) {
     try {
-        write_mesh_block(kSharedMemory, load_mesh(file, options));
+        std::vector<std::string> warnings;
+        const Mesh mesh = load_mesh(file, options, warnings);
+        write_mesh_block(kSharedMemory, mesh, warnings);
     } catch (const std::bad_alloc&) {
         write_memory_block(kSharedMemory);
     } catch (const Error& error) {

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -185,7 +186,8 @@ std::string list_uv_sets(const MeshReadOptions& options) {
 
 } // namespace
 
-Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions& options) {
+Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions& options,
+                        std::vector<std::string>& warnings) {
     const MeshReaderSettings& settings = options.reader;
     const uint64_t memory_limit = get_memory_limit(settings);
     const SharedMemory memory;
@@ -199,7 +201,9 @@ Mesh read_mesh_in_child(const std::filesystem::path& file, const MeshReadOptions
     Child child(settings.program, words, memory.descriptor());
     const int status = wait_for(child, file, settings);
     refuse_cancelled(file, settings); // an interrupt from the terminal ends the child as well
-    return take_mesh(file, status, read_mesh_block(memory.descriptor(), memory_limit), memory_limit);
+    MeshBlock block = read_mesh_block(memory.descriptor(), memory_limit);
+    std::ranges::move(block.warnings, std::back_inserter(warnings));
+    return take_mesh(file, status, std::move(block), memory_limit);
 }
 
 } // namespace relief

@@ -8,6 +8,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "io/mesh/assimp_axes.h"
 #include "io/mesh/further_uvs.h"
 #include "io/mesh/welder.h"
 #include "relief/error.h"
@@ -18,8 +19,10 @@ namespace {
 
 class AssimpBuilder {
   public:
-    AssimpBuilder(const aiScene& scene, std::string file, const MeshReadOptions& options)
+    AssimpBuilder(const aiScene& scene, const aiMatrix4x4& turn_axes, std::string file,
+                  const MeshReadOptions& options)
         : scene_(scene),
+          turn_axes_(turn_axes),
           file_(std::move(file)),
           uv_set_(unsigned(options.uv_set)),
           further_(options),
@@ -36,7 +39,7 @@ class AssimpBuilder {
         }
         if (uv_set_ > 0 && with_uv_ == 0)
             fail(fmt::format("has no uv set {}", uv_set_), "sets are counted from 0");
-        add_node(*scene_.mRootNode, aiMatrix4x4());
+        add_node(*scene_.mRootNode, turn_axes_);
         if (mesh_.uvs.empty()) mesh_.uv_indices.clear(); // no node has a part with uvs
         mesh_.uv_set = int(uv_set_);
         mesh_.further_uvs = further_.take();
@@ -100,6 +103,7 @@ class AssimpBuilder {
     }
 
     const aiScene& scene_;
+    aiMatrix4x4 turn_axes_;
     std::string file_;
     unsigned uv_set_;
     FurtherUvs further_;
@@ -124,14 +128,17 @@ void rethrow_out_of_memory(const std::exception_ptr& kept) {
 
 } // namespace
 
-Mesh read_assimp_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
+Mesh read_assimp_mesh(const std::filesystem::path& file, const MeshReadOptions& options,
+                      std::vector<std::string>& warnings) {
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
     if (!scene) rethrow_out_of_memory(importer.GetException());
     if (!scene || !scene->mRootNode)
         throw Error(ErrorKind::bad_input, {fmt::format("cannot be read: {}", importer.GetErrorString()),
                                            file.string(), "the file is damaged: export it again"});
-    return AssimpBuilder(*scene, file.string(), options).build();
+    warn_of_unit(*scene, file.string(), warnings);
+    return AssimpBuilder(*scene, find_turn_of_axes(*scene, file.string(), warnings), file.string(), options)
+        .build();
 }
 
 } // namespace relief

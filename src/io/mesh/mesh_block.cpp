@@ -4,6 +4,8 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <type_traits>
 #include <vector>
@@ -11,12 +13,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/text_reading.h"
+
 namespace relief {
 
 namespace {
 
-constexpr std::array<char, 8> kBlockMagic = {'r', 'e', 'l', 'i', 'e', 'f', 'M', '2'};
-constexpr size_t kArrays = 12;
+constexpr std::array<char, 8> kBlockMagic = {'r', 'e', 'l', 'i', 'e', 'f', 'M', '3'};
+constexpr size_t kArrays = 13;
 
 /// The sizes are those of the arrays of a mesh, or of the three texts of an error.
 struct Header {
@@ -65,14 +69,40 @@ bool part_uv_sets(const UvSets& sets, Mesh& mesh) {
     return uv == sets.uvs.end();
 }
 
-/// Calls `visit(array, place)` for all arrays, in the order of the block.
-template <class AnyMesh, class AnySets, class Visit>
-void visit_arrays(AnyMesh& mesh, AnySets& sets, const Visit& visit) {
+/// Calls `visit(array, place)` for all arrays, in the order of the block. `warnings`: one per line.
+template <class AnyMesh, class AnySets, class Text, class Visit>
+void visit_arrays(AnyMesh& mesh, AnySets& sets, Text& warnings, const Visit& visit) {
     visit(mesh.positions, 0), visit(mesh.uvs, 1), visit(mesh.normals, 2);
     visit(mesh.face_sizes, 3);
     visit(mesh.position_indices, 4), visit(mesh.uv_indices, 5), visit(mesh.normal_indices, 6);
     visit(mesh.tangents, 7), visit(mesh.creases, 8);
     visit(sets.entries, 9), visit(sets.uvs, 10), visit(sets.indices, 11);
+    visit(warnings, 12);
+}
+
+constexpr uint64_t kMostText = 1 << 20; ///< bytes of errors or warnings
+
+void replace_control_characters(std::string& text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; }, '?');
+}
+
+std::string join_lines(const std::vector<std::string>& lines) {
+    std::string text;
+    for (std::string line : lines) {
+        replace_control_characters(line);
+        if (text.size() + line.size() < kMostText) text += line + '\n';
+    }
+    return text;
+}
+
+std::vector<std::string> split_lines(std::string_view text) {
+    std::vector<std::string> lines;
+    while (!text.empty()) {
+        lines.emplace_back(take_line(text));
+        replace_control_characters(lines.back());
+    }
+    return lines;
 }
 
 /// Reads and writes one after the other, from the start of the file.
@@ -153,17 +183,18 @@ bool is_consistent(const Mesh& mesh) {
     });
 }
 
-bool read_mesh(Cursor& cursor, const Header& header, uint64_t left, Mesh& mesh) {
-    bool is_whole = true;
+bool read_mesh(Cursor& cursor, const Header& header, uint64_t left, MeshBlock& block) {
+    bool is_whole = header.sizes[kArrays - 1] <= kMostText;
     UvSets sets;
-    visit_arrays(mesh, sets, [&](auto& array, size_t place) {
+    std::string warnings;
+    visit_arrays(block.mesh, sets, warnings, [&](auto& array, size_t place) {
         is_whole = is_whole && read_array(cursor, header.sizes[place], left, array);
     });
-    return is_whole && left == 0 && part_uv_sets(sets, mesh) && is_consistent(mesh);
+    block.warnings = split_lines(warnings);
+    return is_whole && left == 0 && part_uv_sets(sets, block.mesh) && is_consistent(block.mesh);
 }
 
 bool read_error(Cursor& cursor, const Header& header, uint64_t left, MeshBlock& block) {
-    constexpr uint64_t kMostText = 1 << 20;
     if (left > kMostText) return false;
     if (header.error_kind < uint32_t(ErrorKind::failed) ||
         header.error_kind > uint32_t(ErrorKind::out_of_memory))
@@ -172,8 +203,7 @@ bool read_error(Cursor& cursor, const Header& header, uint64_t left, MeshBlock& 
     size_t place = 0;
     for (std::string* text : {&block.error.message, &block.error.where, &block.error.hint}) {
         if (!read_array(cursor, header.sizes[place++], left, *text)) return false;
-        std::replace_if(
-            text->begin(), text->end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; }, '?');
+        replace_control_characters(*text);
     }
     return left == 0;
 }
@@ -181,14 +211,16 @@ bool read_error(Cursor& cursor, const Header& header, uint64_t left, MeshBlock& 
 } // namespace
 
 // The magic is written last: a block that is not whole has none.
-void write_mesh_block(int descriptor, const Mesh& mesh) {
+void write_mesh_block(int descriptor, const Mesh& mesh, const std::vector<std::string>& warnings) {
     Header header;
     header.content = uint32_t(BlockContent::mesh);
     Cursor cursor(descriptor);
     const UvSets sets = join_uv_sets(mesh);
-    visit_arrays(mesh, sets, [&](const auto& array, size_t place) { header.sizes[place] = array.size(); });
+    const std::string text = join_lines(warnings);
+    visit_arrays(mesh, sets, text,
+                 [&](const auto& array, size_t place) { header.sizes[place] = array.size(); });
     cursor.write(&header, sizeof header);
-    visit_arrays(mesh, sets, [&](const auto& array, size_t) { write_array(cursor, array); });
+    visit_arrays(mesh, sets, text, [&](const auto& array, size_t) { write_array(cursor, array); });
     Cursor(descriptor).write(kBlockMagic.data(), kBlockMagic.size());
 }
 
@@ -222,7 +254,7 @@ MeshBlock read_mesh_block(int descriptor, uint64_t most_bytes) {
         block.content = BlockContent::out_of_memory;
     else if (header.content == uint32_t(BlockContent::error) && read_error(cursor, header, left, block))
         block.content = BlockContent::error;
-    else if (header.content == uint32_t(BlockContent::mesh) && read_mesh(cursor, header, left, block.mesh))
+    else if (header.content == uint32_t(BlockContent::mesh) && read_mesh(cursor, header, left, block))
         block.content = BlockContent::mesh;
     return block;
 }

@@ -38,6 +38,13 @@ class PlyBuilder {
         return weld();
     }
 
+    void add_warnings(std::vector<std::string>& warnings) const {
+        if (misfit_uvs_ > 0)
+            warnings.push_back(fmt::format("{}: {} faces have other numbers of texture coordinates than of "
+                                           "corners, and are read without uvs",
+                                           name_, misfit_uvs_));
+    }
+
   private:
     [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
         throw Error(ErrorKind::bad_input, {message, name_, hint});
@@ -133,13 +140,13 @@ class PlyBuilder {
     }
 
     void add_face(const std::vector<uint32_t>& corners, const std::vector<float>& uvs) {
-        if (!uvs.empty() && uvs.size() != 2 * corners.size())
-            cursor_.fail(fmt::format("{} texture coordinates for {} corners", uvs.size(), corners.size()));
         if (corners.size() < 3) return;
+        const bool has_uvs = uvs.size() == 2 * corners.size();
+        if (!has_uvs && !uvs.empty()) ++misfit_uvs_;
         mesh_.face_sizes.push_back(uint32_t(corners.size()));
         corners_.insert(corners_.end(), corners.begin(), corners.end());
-        has_face_uvs_.push_back(!uvs.empty());
-        for (size_t k = 0; k + 1 < uvs.size(); k += 2) corner_uvs_.push_back({uvs[k], uvs[k + 1]});
+        has_face_uvs_.push_back(has_uvs);
+        for (size_t k = 0; has_uvs && k < uvs.size(); k += 2) corner_uvs_.push_back({uvs[k], uvs[k + 1]});
     }
 
     /// Welds the values of the vertices; the corners get the index of theirs.
@@ -181,11 +188,17 @@ class PlyBuilder {
     std::vector<Vec3f> positions_, normals_;
     std::vector<Vec2f> uvs_, corner_uvs_;
     std::vector<bool> has_face_uvs_;
+    size_t misfit_uvs_ = 0;         ///< faces whose list of uvs is of another length than their corners
     std::vector<uint32_t> corners_; ///< of the vertices as they stand in the file
 };
 
 } // namespace
 
-Mesh parse_ply(std::string_view bytes, const std::string& name) { return PlyBuilder(bytes, name).build(); }
+Mesh parse_ply(std::string_view bytes, const std::string& name, std::vector<std::string>* warnings) {
+    PlyBuilder builder(bytes, name);
+    Mesh mesh = builder.build();
+    if (warnings) builder.add_warnings(*warnings);
+    return mesh;
+}
 
 } // namespace relief

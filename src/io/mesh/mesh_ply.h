@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "relief/scene.h"
 
@@ -13,6 +14,7 @@ namespace relief {
 /// wins over uvs of the vertices. Types and orders may be any; other properties and elements are left out, as
 /// are faces of fewer than 3 corners. Equal positions are welded.
 /// `name` is for messages. Throws bad_input with line or byte and the number of the element.
-Mesh parse_ply(std::string_view bytes, const std::string& name);
+/// Lists of uvs that do not fit their faces are left out, and added to `warnings`.
+Mesh parse_ply(std::string_view bytes, const std::string& name, std::vector<std::string>* warnings = nullptr);
 
 } // namespace relief

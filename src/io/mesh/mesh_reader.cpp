@@ -7,6 +7,7 @@
 #include "base/suggest.h"
 #include "io/file_system.h"
 #include "io/mesh/child_reader.h"
+#include "io/mesh/mend_mesh.h"
 #include "io/mesh/mesh_assimp.h"
 #include "io/mesh/mesh_gltf.h"
 #include "io/mesh/mesh_obj.h"
@@ -29,11 +30,11 @@ Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options
                     {"only animations of glTF files are read", name,
                      "export it as glTF, or write a file for each frame and name them with ####"});
     if (extension == ".fbx")
-        return options.reader.program.empty() ? read_assimp_mesh(file, options)
-                                              : read_mesh_in_child(file, options);
+        return options.reader.program.empty() ? read_assimp_mesh(file, options, warnings)
+                                              : read_mesh_in_child(file, options, warnings);
     if (is_gltf) {
         const auto read_beside = [&file](const std::string& path) {
-            const std::filesystem::path other = file.parent_path() / path;
+            const std::filesystem::path other = find_with_slashes(file.parent_path() / path);
             require_file(other);
             return read_file_bytes(other);
         };
@@ -42,8 +43,8 @@ Mesh read_mesh(const std::filesystem::path& file, const MeshReadOptions& options
     if (options.uv_set != 0)
         throw Error(ErrorKind::bad_input, {fmt::format("has no uv set {}", options.uv_set), name,
                                            fmt::format("a file '{}' has one set, number 0", extension)});
-    return extension == ".obj" ? parse_obj(read_file_bytes(file), name)
-                               : parse_ply(read_file_bytes(file), name);
+    return extension == ".obj" ? parse_obj(read_file_bytes(file), name, &warnings)
+                               : parse_ply(read_file_bytes(file), name, &warnings);
 }
 
 } // namespace
@@ -73,6 +74,7 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
     if (mesh.face_sizes.empty())
         throw Error(ErrorKind::bad_input,
                     {"the mesh has no faces", file.string(), "export the polygons as well"});
+    mend_mesh(mesh, file.string(), warnings);
     return mesh;
 }
 

@@ -10,15 +10,15 @@
 
 #include <fmt/format.h>
 
+#include "base/text_reading.h"
 #include "relief/error.h"
 
 namespace relief {
 
 void PlyCursor::fail(const std::string& message) const {
-    const std::string place =
-        format_ == PlyFormat::ascii
-            ? fmt::format("line {}", 1 + std::count(bytes_.begin(), bytes_.begin() + ptrdiff_t(at_), '\n'))
-            : fmt::format("byte {}", at_);
+    const std::string place = format_ == PlyFormat::ascii
+                                  ? fmt::format("line {}", find_place(bytes_, at_).line)
+                                  : fmt::format("byte {}", at_);
     throw Error(ErrorKind::bad_input,
                 {message, fmt::format("{}, {}, {} {}", name_, place, *element_, index_), kDamagedPlyHint});
 }

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text_reading.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -42,10 +43,16 @@ std::vector<std::string_view> split_words(std::string_view line) {
 
 class HeaderParser {
   public:
-    HeaderParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+    HeaderParser(std::string_view bytes, const std::string& name)
+        : bytes_(bytes), name_(name), at_(bytes.size() - skip_byte_order_mark(bytes).size()) {
+        // A body that follows CR alone may begin with the byte of LF.
+        const size_t end = std::min(bytes.find_first_of("\r\n", at_), bytes.size());
+        ends_with_cr_ = bytes.substr(end).starts_with('\r') && !bytes.substr(end).starts_with("\r\n");
+    }
 
     PlyHeader parse() {
-        if (next_line() != "ply") fail("does not begin with the word 'ply'", "this is no PLY file");
+        if (split_words(next_line()) != std::vector<std::string_view>{"ply"})
+            fail("does not begin with the word 'ply'", "this is no PLY file");
         while (true) {
             const std::vector<std::string_view> words = split_words(next_line());
             if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
@@ -73,7 +80,7 @@ class HeaderParser {
 
     std::string_view next_line() {
         ++line_;
-        const size_t end = bytes_.find('\n', at_);
+        const size_t end = bytes_.find(ends_with_cr_ ? '\r' : '\n', at_);
         if (end == std::string_view::npos) fail("the header has no end", kDamagedHint);
         std::string_view line = bytes_.substr(at_, end - at_);
         at_ = end + 1;
@@ -130,13 +137,14 @@ class HeaderParser {
     std::string_view bytes_;
     const std::string& name_;
     PlyHeader header_;
-    bool has_format_ = false;
+    bool has_format_ = false, ends_with_cr_ = false;
     size_t at_ = 0, line_ = 0;
 };
 
 } // namespace
 
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
+    if (is_wide_text(bytes)) throw Error(ErrorKind::bad_input, {kWideText, name, kWideTextHint});
     return HeaderParser(bytes, name).parse();
 }
 

@@ -9,6 +9,7 @@
 #include "formulas/bsdf.h"
 #include "formulas/tonemap.h"
 #include "image/texel_layout.h"
+#include "io/file_system.h"
 #include "io/picture/color_space.h"
 #include "io/scene/tile_names.h"
 #include "relief/error.h"
@@ -132,7 +133,8 @@ void check_finite(const Texture& texture, int udim) {
 
 fs::path AssetCache::resolve(const std::string& file) const {
     const fs::path path(file);
-    return (path.is_absolute() || folder_.empty() ? path : folder_ / path).lexically_normal();
+    const bool is_whole = path.is_absolute() || folder_.empty();
+    return find_with_slashes(is_whole ? path : folder_ / path).lexically_normal();
 }
 
 std::optional<Mesh> AssetCache::take_mesh(const std::string& file) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "io/file_system.h"
 #include "io/scene/keyed_values.h"
 #include "io/scene/tile_names.h"
 
@@ -48,7 +49,8 @@ std::string name_blend(const SequenceFiles& files) {
 
 std::vector<int64_t> FileSequences::list_numbers(const std::string& pattern) const {
     const fs::path path(pattern);
-    const auto [folder, name] = split_at_number(path.is_absolute() ? path : folder_ / path);
+    const auto [folder, name] =
+        split_at_number(find_with_slashes(path.is_absolute() ? path : folder_ / path));
     std::vector<int64_t> numbers;
     std::error_code code;
     for (fs::directory_iterator it(folder.empty() ? "." : folder, code), end; !code && it != end;
