@@ -241,7 +241,8 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
     EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":3}])")), "nodes[0].mesh: there is no mesh 3");
     EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":0,"rotation":[0,0,0,0]}])")), "has no length");
     EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":0,"matrix":[1,2]}])")), "must be 16 numbers, not 2");
-    EXPECT_HAS(set("/extensionsRequired", {"KHR_draco_mesh_compression"}), "without compression");
+    EXPECT_HAS(set("/extensionsRequired", {"EXT_unheard_of"}),
+               "extensionsRequired[0]: needs the extension EXT_unheard_of");
     EXPECT_HAS(set("/meshes", {1}), "meshes[0]: must be an object");
     EXPECT_HAS(complain([](Document& d) { d.json["accessors"][0].erase("bufferView"); }),
                "such as that of Draco");
@@ -253,10 +254,6 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
                    primitive_of(d)["indices"] = d.add<uint16_t>("SCALAR", 5123, {0, 1, 2, 3});
                }),
                "4 indices do not make triangles");
-    EXPECT_HAS(complain([](Document& d) {
-                   primitive_of(d)["attributes"]["NORMAL"] = d.add_floats("VEC3", {0, 0, 1});
-               }),
-               "1 values for 4 vertices");
 }
 
 TEST_F(GltfFiles, damaged_containers_are_told) {
@@ -276,10 +273,8 @@ TEST_F(GltfFiles, damaged_containers_are_told) {
     EXPECT_HAS(complain("{"), "m.glb, line 1");
     EXPECT_HAS(complain("[1]"), "must be an object");
     const std::string deep(100000, '[');
-    EXPECT_HAS(complain(R"({"asset":{"version":"2.0"},"extras":)" + deep), "broken JSON");
-    const std::string closed = deep + std::string(100000, ']');
-    EXPECT_TRUE(parse_gltf(R"({"asset":{"version":"2.0"},"extras":)" + closed + "}", "m.gltf", refuse, {})
-                    .face_sizes.empty());
+    EXPECT_HAS(complain(R"({"asset":{"version":"2.0"},"extras":)" + deep), "levels deep");
+    EXPECT_HAS(complain(R"({"asset":{"version":"2.0"},"extras":)" + std::string(200, '[')), "broken JSON");
 }
 
 } // namespace

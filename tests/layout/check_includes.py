@@ -41,7 +41,7 @@ LIBRARIES = {
     r"hwy/": ["src/math", "src/formulas", "src/surface", "src/cpu"],
     r"OpenImageIO/|OpenColorIO/": ["src/io/picture/module"],
     r"Imath/|OpenEXR/|png\.h": ["src/io"],
-    r"assimp/": ["src/io"],
+    r"assimp/|draco/|meshoptimizer\.h": ["src/io"],
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],
     r"embree3/": ["apps/bench"],

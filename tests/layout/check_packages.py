@@ -20,6 +20,10 @@ PACKAGES = {
     "PNG": ["libpng-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],
     "assimp": ["libassimp-dev"],
+    "DRACO_LIBRARY": ["libdraco-dev"],
+    "DRACO_FOLDER": ["libdraco-dev"],
+    "MESHOPT_LIBRARY": ["libmeshoptimizer-dev"],
+    "MESHOPT_FOLDER": ["libmeshoptimizer-dev"],
     "CLI11": ["libcli11-dev"],
     "GTest": ["libgtest-dev"],
     # Only `relief bench triangles` needs it.

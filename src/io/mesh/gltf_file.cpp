@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "io/mesh/gltf_compression.h"
 #include "io/mesh/gltf_uri.h"
 
 namespace relief {
@@ -156,14 +157,54 @@ std::string_view GltfFile::find_buffer(const JsonNode& index) {
     return bytes.substr(0, size);
 }
 
-std::string_view GltfFile::find_view(const JsonNode& view) {
-    const std::string_view buffer = find_buffer(view.get("buffer"));
-    const size_t offset = read_offset(view);
-    const auto size = size_t(view.get("byteLength").as_integer(0, kMostFileBytes));
+/// Of a bufferView, or of its compressed form.
+std::string_view GltfFile::find_bytes(const JsonNode& place) {
+    const std::string_view buffer = find_buffer(place.get("buffer"));
+    const size_t offset = read_offset(place);
+    const auto size = size_t(place.get("byteLength").as_integer(0, kMostFileBytes));
     if (offset > buffer.size() || size > buffer.size() - offset)
-        view.fail(fmt::format("goes to byte {} of a buffer of {} bytes", offset + size, buffer.size()),
-                  kDamagedFileHint);
+        place.fail(fmt::format("goes to byte {} of a buffer of {} bytes", offset + size, buffer.size()),
+                   kDamagedFileHint);
     return buffer.substr(offset, size);
+}
+
+/// The compressed form counts where this build can read it: the other one may be a buffer without bytes.
+std::string_view GltfFile::find_view(const JsonNode& view) {
+    const auto extensions = view.find("extensions");
+    for (const std::string_view name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+        const auto compressed = extensions ? extensions->find(name) : std::nullopt;
+        if (!compressed || !can_decompress_gltf(name)) continue;
+        const auto [found, is_new] = decompressed_.try_emplace(&view);
+        if (is_new) found->second = decode_meshopt(find_bytes(*compressed), *compressed);
+        return found->second;
+    }
+    return find_bytes(view);
+}
+
+std::string_view GltfFile::read_view(const JsonNode& view_index) {
+    return find_view(resolve(view_index, views_, "bufferView"));
+}
+
+std::span<const float> GltfFile::keep(std::vector<float> values) {
+    return kept_.emplace_back(std::move(values));
+}
+
+bool GltfFile::has_whole_numbers(const JsonNode& accessor_index) const {
+    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
+    const auto normalized = accessor.find("normalized");
+    const bool is_part = normalized && normalized->as_bool();
+    return !is_part &&
+           accessor.get("componentType").as_integer(kFirstComponent, kLastComponent) != kLastComponent;
+}
+
+std::optional<float> GltfFile::find_largest(const JsonNode& accessor_index) const {
+    constexpr std::array<float, 4> kLargest = {127, 255, 32767, 65535}; // by componentType, from 5120 on
+    const JsonNode& accessor = resolve(accessor_index, accessors_, "accessor");
+    const auto normalized = accessor.find("normalized");
+    if (!normalized || !normalized->as_bool()) return std::nullopt;
+    const int64_t component = accessor.get("componentType").as_integer(kFirstComponent, kLastComponent);
+    if (component - kFirstComponent >= int64_t(kLargest.size())) return std::nullopt;
+    return kLargest[size_t(component - kFirstComponent)];
 }
 
 GltfFile::Values GltfFile::find_values(const JsonNode& accessor, size_t width) {

@@ -1,8 +1,10 @@
 // The container of glTF 2.0, text or GLB: its JSON, its buffers, and the numbers of its accessors.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +25,7 @@ class GltfFile {
     GltfFile(const GltfFile&) = delete;
     GltfFile& operator=(const GltfFile&) = delete;
 
+    const std::string& name() const { return name_; }
     JsonNode root() const { return JsonNode(document_, "", name_); }
     /// Elements of an array of the root; empty where it has none.
     std::vector<JsonNode> list(std::string_view key) const;
@@ -34,6 +37,14 @@ class GltfFile {
     /// They live as long as the file: many parts may share them.
     std::span<const float> read_floats(const JsonNode& accessor_index, size_t width);
     std::vector<uint32_t> read_indices(const JsonNode& accessor_index);
+    /// What integers of an accessor are parts of, where it says that they are.
+    std::optional<float> find_largest(const JsonNode& accessor_index) const;
+    /// Whether the values of an accessor are integers that mean themselves, not parts of the largest one.
+    bool has_whole_numbers(const JsonNode& accessor_index) const;
+    /// The bytes of a bufferView, decompressed.
+    std::string_view read_view(const JsonNode& view_index);
+    /// Values that live as long as the file.
+    std::span<const float> keep(std::vector<float> values);
 
   private:
     struct Values;
@@ -45,6 +56,7 @@ class GltfFile {
     void apply_sparse(const JsonNode& accessor, const JsonNode& sparse, size_t width,
                       std::vector<float>& floats);
     std::string_view find_view(const JsonNode& view);
+    std::string_view find_bytes(const JsonNode& place);
     std::string_view find_buffer(const JsonNode& index);
     std::string load_buffer(const JsonNode& buffer) const;
     void open_glb(std::string_view bytes);
@@ -57,6 +69,8 @@ class GltfFile {
     std::vector<JsonNode> accessors_, views_, buffers_;
     std::map<const JsonNode*, std::string> loaded_;        ///< bytes of buffers that are not in the GLB file
     std::map<const JsonNode*, std::vector<float>> floats_; ///< of accessors that were read
+    std::map<const JsonNode*, std::string> decompressed_;  ///< bufferViews
+    std::deque<std::vector<float>> kept_;
 };
 
 } // namespace relief

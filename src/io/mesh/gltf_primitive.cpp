@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "io/mesh/gltf_compression.h"
+#include "relief/error.h"
 
 namespace relief {
 
@@ -51,10 +57,57 @@ void add_polygons(GltfPrimitive& part, const std::vector<Triangle>& triangles) {
     }
 }
 
-void read_faces(GltfFile& file, const JsonNode& primitive, int64_t mode, GltfPrimitive& part) {
+/// The values of a part by Draco, where it has them and this build can read them.
+class DracoPart {
+  public:
+    DracoPart(GltfFile& file, const JsonNode& primitive) : file_(file) {
+        const auto extensions = primitive.find("extensions");
+        extension_ = extensions ? extensions->find(kName) : std::nullopt;
+        if (!extension_ || !can_decompress_gltf(kName)) return;
+        mesh_.emplace(file.read_view(extension_->get("bufferView")), *extension_);
+    }
+
+    std::optional<std::vector<uint32_t>> list_corners() const {
+        if (!mesh_) return std::nullopt;
+        return mesh_->list_corners();
+    }
+
+    /// Of an attribute; nothing where it is not among the compressed ones. `accessor`: says how it is meant.
+    std::optional<std::span<const float>> read(const std::string& key, size_t width,
+                                               const JsonNode& accessor) const {
+        if (!mesh_) return std::nullopt;
+        const auto id = extension_->get("attributes").find(key);
+        if (!id) return std::nullopt;
+        return file_.keep(mesh_->read_floats(uint32_t(id->as_integer(0, UINT32_MAX)), width,
+                                             file_.find_largest(accessor), *extension_));
+    }
+
+  private:
+    static constexpr const char* kName = "KHR_draco_mesh_compression";
+    GltfFile& file_;
+    std::optional<JsonNode> extension_;
+    std::optional<DracoMesh> mesh_;
+};
+
+/// What is not needed: nothing, and a warning, where `read` throws that it cannot be read.
+template <class Read>
+std::span<const float> read_if_possible(const Read& read, std::vector<std::string>& warnings) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::bad_input) throw;
+        warnings.push_back(fmt::format("{}: {}, and is left out", error.where(), error.message()));
+        return {};
+    }
+}
+
+void read_faces(GltfFile& file, const JsonNode& primitive, const DracoPart& draco, int64_t mode,
+                GltfPrimitive& part) {
     const size_t vertex_count = part.positions.size() / 3;
     std::vector<uint32_t> indices;
-    if (const auto index = primitive.find("indices")) {
+    if (std::optional<std::vector<uint32_t>> corners = draco.list_corners()) {
+        indices = std::move(*corners), mode = kTriangles; // strips, too, are stored as triangles
+    } else if (const auto index = primitive.find("indices")) {
         indices = file.read_indices(*index);
     } else {
         indices.resize(vertex_count);
@@ -88,7 +141,8 @@ void add_target(std::vector<float>& values, size_t width, std::span<const float>
 
 } // namespace
 
-void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part) {
+void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part,
+                       std::vector<std::string>& warnings) {
     const auto targets = primitive.find("targets");
     if (!targets) return;
     for (const JsonNode& target : targets->elements()) {
@@ -102,8 +156,11 @@ void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive&
                     kDamagedHint);
             return values;
         };
-        part.targets.push_back(
-            {read("POSITION", part.positions), read("NORMAL", part.normals), read("TANGENT", part.tangents)});
+        const auto try_to_read = [&](const char* key, std::span<const float> base) {
+            return read_if_possible([&] { return read(key, base); }, warnings);
+        };
+        part.targets.push_back({read("POSITION", part.positions), try_to_read("NORMAL", part.normals),
+                                try_to_read("TANGENT", part.tangents)});
     }
 }
 
@@ -124,29 +181,40 @@ MorphedPrimitive::MorphedPrimitive(const GltfPrimitive& part, const std::vector<
 }
 
 GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set,
-                                  std::span<const int> further_sets) {
+                                  std::span<const int> further_sets, std::vector<std::string>& warnings) {
     GltfPrimitive part;
     const auto mode_node = primitive.find("mode");
     const int64_t mode = mode_node ? mode_node->as_integer(0, kFan) : kTriangles;
     if (mode <= kLastLineMode) return part;
     const JsonNode attributes = primitive.get("attributes");
-    part.positions = file.read_floats(attributes.get("POSITION"), 3);
+    const DracoPart draco(file, primitive);
+    const auto load = [&](const std::string& key, size_t width) {
+        const JsonNode index = attributes.get(key);
+        const auto values = draco.read(key, width, index);
+        return values ? *values : file.read_floats(index, width);
+    };
+    part.positions = load("POSITION", 3);
     const size_t vertex_count = part.positions.size() / 3;
     const auto read = [&](const std::string& key, size_t width) {
         const auto index = attributes.find(key);
         if (!index) return std::span<const float>();
-        const std::span<const float> values = file.read_floats(*index, width);
-        if (values.size() != vertex_count * width)
-            index->fail(fmt::format("{} values for {} vertices", values.size() / width, vertex_count),
+        return read_if_possible(
+            [&] {
+                const std::span<const float> values = load(key, width);
+                if (values.size() != vertex_count * width)
+                    index->fail(
+                        fmt::format("has {} values for {} vertices", values.size() / width, vertex_count),
                         kDamagedHint);
-        return values;
+                return values;
+            },
+            warnings);
     };
     part.normals = read("NORMAL", 3);
     part.tangents = read("TANGENT", 4);
     part.uvs = read(fmt::format("TEXCOORD_{}", uv_set), 2);
     for (const int set : further_sets) part.further_uvs.push_back(read(fmt::format("TEXCOORD_{}", set), 2));
     part.uv_set_count = count_uv_sets(attributes);
-    read_faces(file, primitive, mode, part);
+    read_faces(file, primitive, draco, mode, part);
     return part;
 }
 

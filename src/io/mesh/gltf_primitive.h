@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "io/mesh/gltf_file.h"
@@ -26,13 +27,14 @@ struct GltfPrimitive {
     size_t uv_set_count = 0; ///< TEXCOORD_0 and so on that the part has
 };
 
-/// Points and lines have no faces; targets are left out. `further_sets`: numbers of uv sets. Throws
-/// bad_input.
+/// Points and lines have no faces; targets are left out. `further_sets`: numbers of uv sets. Normals,
+/// tangents and uvs that cannot be read are left out, and added to `warnings`. Throws bad_input.
 GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set,
-                                  std::span<const int> further_sets);
+                                  std::span<const int> further_sets, std::vector<std::string>& warnings);
 
-/// Adds the morph targets to a part. Throws bad_input.
-void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part);
+/// Adds the morph targets to a part; normals and tangents of targets as above. Throws bad_input.
+void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part,
+                       std::vector<std::string>& warnings);
 
 /// A part with its morph targets added, by a weight each; what the weights leave out adds nothing.
 class MorphedPrimitive {

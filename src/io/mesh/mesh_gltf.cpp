@@ -10,10 +10,12 @@
 #include <fmt/format.h>
 
 #include "formulas/basis.h"
-#include "io/foreign_files.h"
 #include "io/mesh/further_uvs.h"
 #include "io/mesh/gltf_animation.h"
+#include "io/mesh/gltf_extensions.h"
 #include "io/mesh/gltf_primitive.h"
+#include "io/mesh/gltf_transform.h"
+#include "io/mesh/gltf_uv_transform.h"
 #include "io/mesh/welder.h"
 #include "math/affine.h"
 #include "relief/error.h"
@@ -21,58 +23,6 @@
 namespace relief {
 
 namespace {
-
-Affine read_node_matrix(const JsonNode& node) {
-    const std::vector<JsonNode> values = node.elements();
-    if (values.size() != 16)
-        node.fail(fmt::format("must be 16 numbers, not {}", values.size()), kDamagedHint);
-    const auto at = [&values](size_t row, size_t column) { return values[4 * column + row].as_float(); };
-    constexpr float kRounding = 1e-5f;
-    for (size_t column = 0; column < 4; ++column)
-        if (std::fabs(at(3, column) - (column == 3 ? 1.0f : 0.0f)) > kRounding)
-            node.fail("is no affine map", "its last row must be 0, 0, 0, 1");
-    Affine result;
-    for (size_t row = 0; row < 3; ++row) result.rows[row] = {at(row, 0), at(row, 1), at(row, 2)};
-    result.translation = {at(0, 3), at(1, 3), at(2, 3)};
-    return result;
-}
-
-/// A quaternion x, y, z, w, which need not have length 1.
-std::array<double, 4> read_quaternion(const JsonNode& node) {
-    const std::vector<JsonNode> values = node.elements();
-    if (values.size() != 4) node.fail(fmt::format("must be 4 numbers, not {}", values.size()), kDamagedHint);
-    std::array<double, 4> q;
-    for (size_t k = 0; k < 4; ++k) q[k] = double(values[k].as_float());
-    return q;
-}
-
-Affine make_rotation(const std::array<double, 4>& q, const JsonNode& node) {
-    double square = 0;
-    for (const double part : q) square += part * part;
-    if (!(square > 0)) node.fail("has no length", kDamagedHint);
-    const double s = 2 / square, x = q[0], y = q[1], z = q[2], w = q[3];
-    Affine result;
-    result.rows[0] = {float(1 - s * (y * y + z * z)), float(s * (x * y - z * w)), float(s * (x * z + y * w))};
-    result.rows[1] = {float(s * (x * y + z * w)), float(1 - s * (x * x + z * z)), float(s * (y * z - x * w))};
-    result.rows[2] = {float(s * (x * z - y * w)), float(s * (y * z + x * w)), float(1 - s * (x * x + y * y))};
-    return result;
-}
-
-/// Of a node, as an animation moves it.
-Affine read_transform(const JsonNode& node, const GltfPose& pose) {
-    if (const auto matrix = node.find("matrix")) return read_node_matrix(*matrix); // which nothing moves
-    Affine result;
-    const auto scale = node.find("scale"), rotation = node.find("rotation"),
-               translation = node.find("translation");
-    if (pose.scale || scale) result = make_scale(pose.scale ? *pose.scale : scale->as_vec3());
-    if (pose.rotation)
-        result = compose(make_rotation(*pose.rotation, node), result);
-    else if (rotation)
-        result = compose(make_rotation(read_quaternion(*rotation), *rotation), result);
-    if (pose.translation || translation)
-        result.translation = pose.translation ? *pose.translation : translation->as_vec3();
-    return result;
-}
 
 /// Of morph targets: the animation's, the node's, or the mesh's.
 std::vector<float> read_weights(const JsonNode& node, const JsonNode& mesh, const GltfPose& pose) {
@@ -122,7 +72,7 @@ class GltfBuilder {
     }
 
     Mesh build() {
-        check_extensions();
+        check_gltf_extensions(file_, warnings_);
         find_instances();
         std::set<const JsonNode*> morphed; // of others targets are not read
         for (const Instance& instance : instances_)
@@ -141,16 +91,20 @@ class GltfBuilder {
 
     /// What of the file does not show in the mesh.
     std::vector<std::string> list_warnings() const {
-        if (skinned_.empty()) return {};
+        std::vector<std::string> warnings;
+        for (const std::string& warning : warnings_)
+            if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
+        if (skinned_.empty()) return warnings;
         constexpr size_t kMostNamed = 4;
         std::string names;
         for (size_t k = 0; k < std::min(skinned_.size(), kMostNamed); ++k)
             names += (k == 0 ? "" : ", ") + skinned_[k];
         if (skinned_.size() > kMostNamed) names += fmt::format(" and {} more", skinned_.size() - kMostNamed);
-        return {fmt::format("{}: {} would be bent by a skin, which is not read: it is seen in its bind pose; "
-                            "export it posed, or "
-                            "for an animation as a file a frame, and name these with ####",
-                            name_, names)};
+        warnings.push_back(
+            fmt::format("{}: {} would be bent by a skin, which is not read: it is seen in its bind pose; "
+                        "export it posed, or for an animation as a file a frame, and name these with ####",
+                        name_, names));
+        return warnings;
     }
 
   private:
@@ -162,17 +116,6 @@ class GltfBuilder {
 
     [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
         throw Error(ErrorKind::bad_input, {message, name_, hint});
-    }
-
-    void check_extensions() const {
-        for (const JsonNode& node : file_.list("extensionsRequired")) {
-            const std::string extension = node.as_string();
-            if (const std::optional<ForeignFile> foreign = find_foreign_gltf(extension))
-                node.fail(foreign->message, foreign->hint);
-            if (extension.find("compression") != std::string::npos)
-                node.fail(fmt::format("needs the extension {}, which is not supported", extension),
-                          "export it without compression");
-        }
     }
 
     /// The roots of the file's scene; of a file without one, all nodes without a parent.
@@ -212,12 +155,19 @@ class GltfBuilder {
             const auto index = size_t(item.node - nodes_.data());
             if (is_seen[index]) item.node->fail("stands twice in the tree of nodes", kDamagedHint);
             is_seen[index] = true;
+            if (is_hidden_gltf_node(*item.node)) {
+                mark_descendants(*item.node, is_seen);
+                continue;
+            }
             const auto posed = poses_.find(index);
             const GltfPose pose = posed == poses_.end() ? GltfPose{} : posed->second;
-            const Affine world_from_node = compose(item.world_from_parent, read_transform(*item.node, pose));
+            const Affine world_from_node =
+                compose(item.world_from_parent, read_gltf_transform(*item.node, pose));
             if (const auto mesh_index = item.node->find("mesh")) {
                 const JsonNode& mesh = GltfFile::resolve(*mesh_index, meshes_, "mesh");
-                instances_.push_back({&mesh, world_from_node, read_weights(*item.node, mesh, pose)});
+                for (const Affine& copy : read_gltf_instances(file_, *item.node))
+                    instances_.push_back(
+                        {&mesh, compose(world_from_node, copy), read_weights(*item.node, mesh, pose)});
                 if (item.node->find("skin")) skinned_.push_back(describe_node(*item.node, index));
             }
             const auto children = item.node->find("children");
@@ -230,6 +180,22 @@ class GltfBuilder {
         if (nodes_.empty()) // a library of meshes
             for (const JsonNode& mesh : meshes_)
                 instances_.push_back({&mesh, {}, read_weights(mesh, mesh, {})});
+    }
+
+    /// Of a hidden node; its descendants are hidden, too.
+    void mark_descendants(const JsonNode& node, std::vector<bool>& is_seen) const {
+        std::vector<const JsonNode*> open{&node};
+        while (!open.empty()) {
+            const JsonNode& parent = *open.back();
+            open.pop_back();
+            if (const auto children = parent.find("children"))
+                for (const JsonNode& child : children->elements()) {
+                    open.push_back(&GltfFile::resolve(child, nodes_, "node"));
+                    const auto index = size_t(open.back() - nodes_.data());
+                    if (is_seen[index]) open.back()->fail("stands twice in the tree of nodes", kDamagedHint);
+                    is_seen[index] = true;
+                }
+        }
     }
 
     static std::string describe_node(const JsonNode& node, size_t index) {
@@ -250,15 +216,36 @@ class GltfBuilder {
         const auto [found, is_new] = parts_.try_emplace(&mesh);
         if (!is_new) return;
         for (const JsonNode& primitive : mesh.get("primitives").elements()) {
-            GltfPrimitive part = read_gltf_primitive(file_, primitive, uv_set_, further_.numbers());
+            GltfPrimitive part =
+                read_gltf_primitive(file_, primitive, uv_set_, further_.numbers(), warnings_);
             if (part.face_sizes.empty()) continue;
-            if (targets == Targets::read) read_gltf_targets(file_, primitive, part);
+            if (targets == Targets::read) read_gltf_targets(file_, primitive, part, warnings_);
+            place_uvs(primitive, part);
             with_uv_ += part.uvs.empty() ? 0 : 1;
             most_uv_sets_ = std::max(most_uv_sets_, part.uv_set_count);
             if (part.normals.empty()) has_normals_ = false;
             if (part.tangents.empty()) has_tangents_ = false;
             found->second.push_back(std::move(part));
         }
+    }
+
+    /// Uvs as the textures of the material are read, KHR_texture_transform applied.
+    void place_uvs(const JsonNode& primitive, GltfPrimitive& part) {
+        const auto place = [&](std::span<const float>& uvs, int set) {
+            if (uvs.empty()) return;
+            const auto transform = find_uv_transform(file_, primitive, set, warnings_);
+            if (transform)
+                uvs = file_.keep(transform_uvs(uvs, *transform));
+            else if (file_.has_whole_numbers(
+                         primitive.get("attributes").get(fmt::format("TEXCOORD_{}", set))))
+                warnings_.push_back(fmt::format(
+                    "{}: uvs of set {} are whole numbers, and no KHR_texture_transform makes parts "
+                    "of a picture of them: export them as floats (gltfpack -noq)",
+                    name_, set));
+        };
+        place(part.uvs, uv_set_);
+        for (size_t n = 0; n < part.further_uvs.size(); ++n)
+            place(part.further_uvs[n], further_.numbers()[n]);
     }
 
     void check_uvs() const {
@@ -346,6 +333,7 @@ class GltfBuilder {
     std::map<size_t, GltfPose> poses_; ///< of nodes that an animation moves
     std::vector<Instance> instances_;
     std::vector<std::string> skinned_;                            ///< nodes
+    std::vector<std::string> warnings_;                           ///< others than of skins
     std::map<const JsonNode*, std::vector<GltfPrimitive>> parts_; ///< of meshes, each read once
     std::vector<Corner> corners_;                                 ///< by vertex
     uint32_t copy_count_ = 0;
