@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <streambuf>
 
 namespace relief {
 
@@ -32,9 +33,8 @@ std::string_view skip_byte_order_mark(std::string_view text) {
 }
 
 bool is_wide_text(std::string_view text) {
-    using namespace std::string_view_literals;
-    return text.starts_with("\xff\xfe"sv) || text.starts_with("\xfe\xff"sv) ||
-           text.starts_with("\0\0\xfe\xff"sv);
+    constexpr std::string_view kBigEndian32("\0\0\xfe\xff", 4);
+    return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") || text.starts_with(kBigEndian32);
 }
 
 std::string_view take_line(std::string_view& text) {

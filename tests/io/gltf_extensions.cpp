@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #if __has_include(<draco/compression/encode.h>)
 #include <draco/compression/encode.h>
