@@ -105,6 +105,7 @@ class HandOver(Collector):
         if isinstance(mesh, Mesh):
             things, plain = list_parts(mesh)
             keys.setdefault("subdivision", mesh.subdivision)
+            keys.setdefault("weld", mesh.weld)
         else:
             things, plain = [], self._describe_file(mesh)
         plain += "\n" + json.dumps(self.convert(keys, f"meshes.{name}"), sort_keys=True)

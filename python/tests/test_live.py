@@ -50,6 +50,14 @@ class LiveSceneTest(unittest.TestCase):
         np.testing.assert_array_equal(self.live.render().array, relief.render(self.scene).array)
         self.assertEqual(self.live.render().statistics["scene"], relief.render(self.scene).statistics["scene"])
 
+    def test_another_weld_makes_a_surface_anew(self):
+        part = self.scene.meshes[self.scene.objects[1]["mesh"]]
+        mesh = part if isinstance(part, relief.Mesh) else part["file"]
+        mesh.weld = 1e-3
+        self.expect_same(made=1)
+        self.live.change_scene(self.scene)
+        self.assertEqual(self.live.made_surfaces, self.made + 1)
+
     def test_objects_lights_and_materials_change_without_a_surface(self):
         before = self.live.render().array
         self.scene.objects[1]["transform"] = {"translate": [-0.4, 0.3, 0.6], "scale": 0.4}

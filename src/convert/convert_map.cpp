@@ -194,6 +194,15 @@ std::shared_ptr<const Texture> encode_all(const Displacement& to, const Texture&
     return texture;
 }
 
+/// A render refuses such a map, and quotients of its values would be infinite.
+void check_reach(const Displacement& map, const std::string& file, const Field& field) {
+    for (const Vec3f& d : field) {
+        const double reach =
+            std::max({std::fabs(double(d.x)), std::fabs(double(d.y)), std::fabs(double(d.z))});
+        if (!(reach <= kLargestDisplacement)) refuse_reach(map.name, file, reach);
+    }
+}
+
 /// Texels that a surface with `dequantize` would show, whatever its filter.
 std::shared_ptr<const Texture> smooth_steps(const Displacement& map,
                                             const std::shared_ptr<const Texture>& texture) {
@@ -239,6 +248,7 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
         const ProgressFunction tile_progress =
             make_part(on_progress, double(k) / count, (double(k) + 1) / count);
         Field field = decode_all(from, source);
+        check_reach(from, stored.file, field);
         // Frames take most of the time.
         const double half = target_frames ? 0.5 : 0.9;
         if (source_frames)

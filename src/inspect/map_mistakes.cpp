@@ -9,6 +9,7 @@
 #include "inspect/facts.h"
 #include "math/box.h"
 #include "relief/convert.h"
+#include "scene/displacement_conventions.h"
 #include "scene/face_uvs.h"
 
 namespace relief {
@@ -30,6 +31,17 @@ void find_bad_texels(const Displacement& map, const MapStatistics& statistics,
               "NaN or infinity in {} texel(s), the first at {}; paint over it or bake the map again: a "
               "render refuses it",
               statistics.bad_count, describe_place(*statistics.bad, map));
+}
+
+void find_far_texels(const Displacement& map, const MapStatistics& statistics,
+                     std::vector<Finding>& findings) {
+    const double longest = statistics.largest * get_largest_scale(map);
+    if (!(longest > kLargestDisplacement)) return;
+    add_error(
+        findings, "E-FAR",
+        "a displacement of {:.3g} at {}, and a render refuses more than {:g}; paint over it, bake the map "
+        "again or set displacement.scale",
+        longest, describe_place(statistics.largest_place, map), kLargestDisplacement);
 }
 
 double find_low(const MapStatistics& statistics) {
@@ -194,6 +206,7 @@ std::string describe_place(const TexelPlace& place, const Displacement& map) {
 void find_map_mistakes(const Displacement& map, MapMeaning meaning, const MapStatistics& statistics,
                        std::vector<Finding>& findings) {
     find_bad_texels(map, statistics, findings);
+    find_far_texels(map, statistics, findings);
     find_type_mistakes(map, meaning, statistics, findings);
     find_channel_mistakes(map, meaning, statistics, findings);
     find_outlier(map, statistics, findings);

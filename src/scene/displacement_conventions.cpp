@@ -120,4 +120,10 @@ std::string format_axes(const AxisMap& axes, DisplacementSpace space) {
     return text;
 }
 
+void refuse_reach(const std::string& displacement, const std::string& file, double reach) {
+    throw Error(ErrorKind::bad_input,
+                {fmt::format("map '{}' displaces by {:g}", file, reach),
+                 fmt::format("displacement '{}'", displacement), "lower the scale or repair the map"});
+}
+
 } // namespace relief

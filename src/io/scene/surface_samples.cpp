@@ -6,6 +6,7 @@
 
 #include "io/scene/asset_cache.h"
 #include "math/affine.h"
+#include "scene/displacement_conventions.h"
 
 namespace relief {
 
@@ -71,9 +72,16 @@ Vec3f fetch_nearest(const Displacement& map, const Vec2f& uv) {
     return local;
 }
 
+/// A camera cannot be placed by values that a render refuses.
+void check_reach(const Displacement& map, const Vec3f& d) {
+    const double reach = std::max({std::fabs(double(d.x)), std::fabs(double(d.y)), std::fabs(double(d.z))});
+    if (reach > kLargestDisplacement) refuse_reach(map.name, map.tiles.front().texture->file, reach);
+}
+
 Vec3f displace(const Displacement& map, const Vec2f& uv, const FaceFrame& face,
                const Affine& object_from_world) {
     const Vec3f local = fetch_nearest(map, uv);
+    check_reach(map, local);
     if (map.type == DisplacementType::height || map.space == DisplacementSpace::tangent)
         return face.t * local.x + face.b * local.y + face.n * local.z;
     return map.space == DisplacementSpace::world ? transform_vector(object_from_world, local) : local;

@@ -6,14 +6,13 @@
 #include <fmt/format.h>
 
 #include "relief/error.h"
+#include "scene/displacement_conventions.h"
 #include "surface/map/mip_chain.h"
 #include "surface/map/spline_coefficients.h"
 
 namespace relief {
 
 namespace {
-
-constexpr double kLargestDisplacement = 1e18; // squares of lengths stay finite
 
 [[noreturn]] void throw_bad_map(const Displacement& displacement, std::string message, std::string hint) {
     throw Error(ErrorKind::bad_input,
@@ -91,10 +90,7 @@ void check_reach(const std::string& name, const DisplacementMap& map, const std:
                  const ChannelRange& range) {
     for (const Vec3f& row : map.matrix) {
         const double reach = find_row_reach(map, row, range);
-        if (!(reach <= kLargestDisplacement))
-            throw Error(ErrorKind::bad_input,
-                        {fmt::format("map '{}' displaces by {:g}", file, reach),
-                         fmt::format("displacement '{}'", name), "lower the scale or repair the map"});
+        if (!(reach <= kLargestDisplacement)) refuse_reach(name, file, reach);
     }
 }
 
