@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "bench/suites.h"
+#include "bench/suite_list.h"
 #include "common/values.h"
 
 namespace relief::bench {

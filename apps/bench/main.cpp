@@ -26,15 +26,14 @@ void print_goals(const Value& goals) {
 }
 
 int run_bench(const BenchOptions& options) {
-    const Suite& suite = find_suite(options.suite);
-    refuse_options_of_others(suite, options);
+    refuse_options_of_others(find_suite(options.suite), options);
     const std::filesystem::path folder =
         options.folder.empty() ? std::filesystem::path(options.suite) : options.folder;
     std::filesystem::create_directories(folder);
     check_text_writable(folder / (options.suite + ".json"));
     cli::WorkProgress progress(options.progress);
     const Report report = [&](const std::string& line) { progress.begin_step(line); };
-    const SuiteResult outcome = suite.run(options, report);
+    const SuiteResult outcome = run_suite(options, report);
     progress.end_line();
     for (const ReportFile& file : outcome.files) {
         write_text_file(folder / file.name, file.text);
@@ -50,7 +49,7 @@ int run_bench(const BenchOptions& options) {
 }
 
 int parse_and_run(int argument_count, const char* const* arguments) {
-    CLI::App app("Measure, and compare with the figures of a paper", "relief bench");
+    CLI::App app(kBenchDescription, "relief bench");
     cli::prepare_parsing(app);
     BenchOptions options;
     add_bench_options(app, options);

@@ -64,8 +64,8 @@ std::vector<Scene> load_meshes(const BenchOptions& o) {
 
 /// Common part of all suites, after parsing.
 template <class Options>
-SuiteResult run_suite(const BenchOptions& o, Options options, const Report& report,
-                      Value (*run)(const Options&, const Report&), Table (*make_table)(const Value&)) {
+SuiteResult run_with_options(const BenchOptions& o, Options options, const Report& report,
+                             Value (*run)(const Options&, const Report&), Table (*make_table)(const Value&)) {
     options.runs = o.runs.value_or(options.runs);
     const Value result = run(o.is_quick ? make_quick_options(options) : options, report);
     return {result,
@@ -78,7 +78,7 @@ SuiteResult run_paper1_suite(const BenchOptions& o, const Report& report) {
     options.settings.surface.level = o.level.value_or(options.settings.surface.level);
     options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
     options.scenes = check_scenes(o, kPaper1Scenes);
-    return run_suite(o, std::move(options), report, run_paper1, make_paper1_table);
+    return run_with_options(o, std::move(options), report, run_paper1, make_paper1_table);
 }
 
 SuiteResult run_paper2_suite(const BenchOptions& o, const Report& report) {
@@ -86,7 +86,7 @@ SuiteResult run_paper2_suite(const BenchOptions& o, const Report& report) {
     options.settings = make_settings(o, 320, 180);
     options.scenes = check_scenes(o, structure_scene_names());
     options.meshes = load_meshes(o);
-    return run_suite(o, std::move(options), report, run_paper2, make_paper2_table);
+    return run_with_options(o, std::move(options), report, run_paper2, make_paper2_table);
 }
 
 SuiteResult run_paper3_suite(const BenchOptions& o, const Report& report) {
@@ -94,7 +94,7 @@ SuiteResult run_paper3_suite(const BenchOptions& o, const Report& report) {
     options.settings = make_settings(o, 640, 360);
     options.scenes = check_scenes(o, paper3_scenes());
     options.meshes = load_meshes(o);
-    return run_suite(o, std::move(options), report, run_paper3, make_paper3_table);
+    return run_with_options(o, std::move(options), report, run_paper3, make_paper3_table);
 }
 
 /// Own scenes, rendered by Cycles and by the command `relief` beside this program.
@@ -108,7 +108,7 @@ SuiteResult run_beside_cycles(const BenchOptions& o, const Report& report, std::
     options.relief = std::filesystem::read_symlink("/proc/self/exe").replace_filename("relief");
     check_scenes(o, cycles_scene_names());
     if (!o.scenes.empty()) options.scenes = o.scenes;
-    return run_suite(o, std::move(options), report, run, make_table);
+    return run_with_options(o, std::move(options), report, run, make_table);
 }
 
 SuiteResult run_cycles_suite(const BenchOptions& o, const Report& report) {
@@ -147,7 +147,7 @@ SuiteResult run_characters_suite(const BenchOptions& o, const Report& report) {
     if (o.size) options.sizes = {*o.size};
     options.scenes = check_scenes(o, character_scene_names());
     if (!o.meshes.empty()) options.scenes = o.scenes;
-    return run_suite(o, std::move(options), report, run_characters, make_characters_table);
+    return run_with_options(o, std::move(options), report, run_characters, make_characters_table);
 }
 
 /// CPU engine, own scene.
@@ -155,7 +155,7 @@ SuiteResult run_edits_suite(const BenchOptions& o, const Report& report) {
     EditsOptions options;
     options.settings = make_settings(o, 1280, 720);
     options.folder = o.folder.empty() ? std::filesystem::path(o.suite) : o.folder;
-    return run_suite(o, std::move(options), report, run_edits, make_edits_table);
+    return run_with_options(o, std::move(options), report, run_edits, make_edits_table);
 }
 
 /// Sample scenes, rendered by the command `relief` beside this program and by that of another build.
@@ -170,7 +170,7 @@ SuiteResult run_frame_suite(const BenchOptions& o, const Report& report) {
     if (!o.scenes.empty()) options.scenes = o.scenes;
     if (options.settings.device.engine == EngineKind::vulkan) options.isas.clear();
     if (!o.engine.cpu_only.empty()) options.isas = {std::string(cli::isa_name(o.settings.device.isa))};
-    SuiteResult outcome = run_suite(o, std::move(options), report, run_frame, make_frame_table);
+    SuiteResult outcome = run_with_options(o, std::move(options), report, run_frame, make_frame_table);
     outcome.files.push_back({"frame.md", make_frame_page(outcome.result)});
     return outcome;
 }
@@ -181,7 +181,7 @@ SuiteResult run_triangles_suite(const BenchOptions& o, const Report& report) {
     TrianglesOptions options;
     options.isa = o.settings.device.isa;
     options.meshes = load_meshes(o);
-    return run_suite(o, std::move(options), report, run_triangles, make_triangles_table);
+    return run_with_options(o, std::move(options), report, run_triangles, make_triangles_table);
 }
 
 /// Scene files replace the suite's own scenes, unless those are requested as well.
@@ -198,81 +198,33 @@ SuiteResult run_peers_suite(const BenchOptions& o, const Report& report) {
     if (!o.scene_files.empty()) options.scenes = o.scenes;
     if (!o.levels.empty()) options.levels = o.levels;
     options.tessellated_limit_bytes = o.tessellated_limit_bytes.value_or(options.tessellated_limit_bytes);
-    SuiteResult outcome = run_suite(o, std::move(options), report, run_peers, make_peers_table);
+    SuiteResult outcome = run_with_options(o, std::move(options), report, run_peers, make_peers_table);
     outcome.files.push_back({"peers_goals.md", make_goal_table(outcome.result["goals"])});
     return outcome;
 }
 #endif
 
-const std::vector<Suite>& list_suites() {
-    static const std::vector<Suite> kSuites = {
-        {"paper1",
-         "table and figures of Harada 2015 (default)",
-         run_paper1_suite,
-         {"--scenes", "--size", "--level", "--tessellated-limit", "--engine", "--bottom", "--threads",
-          "--isa"}},
-        {"paper2",
-         "builders and traversals over triangle meshes",
-         run_paper2_suite,
-         {"--scenes", "--mesh", "--size", "--engine", "--threads"}},
-        {"paper3",
-         "structures, traversals and render methods of GRAPP 2019",
-         run_paper3_suite,
-         {"--scenes", "--mesh", "--size", "--engine", "--threads"}},
-        {"cycles",
-         "displaced scenes beside Blender's Cycles, where `blender` is found",
-         run_cycles_suite,
-         {"--scenes", "--size", "--threads"}},
-        {"quality",
-         "error against time beside Blender's Cycles, denoised and not",
-         run_quality_suite,
-         {"--scenes", "--size", "--threads"}},
-        {"characters",
-         "subdivision surfaces of characters beside Cycles in Blender, from cold and in sessions",
-         run_characters_suite,
-         {"--scenes", "--mesh", "--vdm", "--space", "--blender", "--size", "--threads"}},
-        {"edits",
-         "a painted rectangle of a map until the next picture, beside a fresh load",
-         run_edits_suite,
-         {"--size", "--threads", "--isa"}},
-        {"frame",
-         "samples a second of path-traced frames, in turn with another build where --baseline names one",
-         run_frame_suite,
-         {"--scenes", "--baseline", "--size", "--spp", "--engine", "--threads", "--isa"}},
+using Run = SuiteResult (*)(const BenchOptions&, const Report&);
+
+constexpr std::pair<std::string_view, Run> kRuns[] = {
+    {"paper1", run_paper1_suite},       {"paper2", run_paper2_suite},   {"paper3", run_paper3_suite},
+    {"cycles", run_cycles_suite},       {"quality", run_quality_suite}, {"characters", run_characters_suite},
+    {"edits", run_edits_suite},         {"frame", run_frame_suite},
 #ifdef RELIEF_EMBREE
-        {"triangles",
-         "plain triangle meshes on the CPU against Embree",
-         run_triangles_suite,
-         {"--mesh", "--isa"}},
-        {"peers",
-         "displaced surfaces on the CPU against Embree's three ways",
-         run_peers_suite,
-         {"--scenes", "--scene", "--levels", "--size", "--tessellated-limit", "--threads", "--isa"}},
+    {"triangles", run_triangles_suite}, {"peers", run_peers_suite},
 #endif
-    };
-    return kSuites;
-}
+};
 
 } // namespace
 
-const Suite& find_suite(const std::string& name) {
-    std::vector<std::string_view> names;
-    for (const Suite& suite : list_suites()) {
-        if (suite.name == name) return suite;
-        names.push_back(suite.name);
-    }
-    throw Error(ErrorKind::usage, {fmt::format("unknown suite '{}', known: {}", name, fmt::join(names, ", ")),
-                                   "", suggest_word(name, names)});
+SuiteResult run_suite(const BenchOptions& options, const Report& report) {
+    const SuiteText& suite = find_suite(options.suite);
+    for (const auto& [name, run] : kRuns)
+        if (name == suite.name) return run(options, report);
+    throw Error(ErrorKind::failed, {fmt::format("suite '{}' has no program", suite.name), "", ""});
 }
 
-std::string describe_suites() {
-    std::string text;
-    for (const Suite& suite : list_suites())
-        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", suite.name, suite.help);
-    return text;
-}
-
-void refuse_options_of_others(const Suite& suite, const BenchOptions& o) {
+void refuse_options_of_others(const SuiteText& suite, const BenchOptions& o) {
     for (const std::string_view option : list_given(o)) {
         if (std::find(suite.options.begin(), suite.options.end(), option) != suite.options.end()) continue;
         throw Error(ErrorKind::usage, {fmt::format("{} has no such option", suite.name), std::string(option),

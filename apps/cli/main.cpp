@@ -20,9 +20,7 @@ Verbs make_verbs(CLI::App& app) {
     verbs.add("scene", "Write a sample scene", add_scene);
     verbs.add("compare", "Difference of two pictures; exit 7 where it is above the threshold", add_compare);
     verbs.add("merge", "Join tiles and sample ranges of one picture", add_merge);
-#ifdef RELIEF_VIEWER
     verbs.add("view", "Look at a scene or mesh in a window, change and paint its maps", add_view);
-#endif
     verbs.add("bench", "Measure, and compare with the figures of a paper", add_bench);
     verbs.add("farm", "Render a shot on many machines, or by many processes", add_farm);
     verbs.add("devices", "List what can render on this machine", add_devices);

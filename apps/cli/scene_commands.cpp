@@ -171,6 +171,9 @@ Value to_json(const DeviceInfo& device) {
 void print_device(const DeviceInfo& device) {
     print_output("vulkan  device {}  {}  {}  {}  {:.1f} GiB\n", device.index, device.kind, device.name,
                  device.driver, double(device.memory_bytes) / double(1u << 30));
+}
+
+void print_methods(const DeviceInfo& device) {
     if (!device.missing.empty())
         print_output("        cannot render: lacks {}\n", fmt::join(device.missing, ", "));
     else
@@ -179,11 +182,15 @@ void print_device(const DeviceInfo& device) {
         print_output("        fragment and hybrid: lacks {}\n", fmt::join(device.missing_to_draw, ", "));
 }
 
-int run_devices(bool is_json) {
+struct DevicesOptions {
+    bool is_json = false, is_quiet = false;
+};
+
+int run_devices(const DevicesOptions& options) {
     const std::vector<std::string> isas = available_isas();
     const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     const std::vector<DeviceInfo> devices = vulkan_devices();
-    if (is_json) {
+    if (options.is_json) {
         Value list = Value::list();
         list.push_back({{"engine", "cpu"},
                         {"threads", threads},
@@ -193,9 +200,12 @@ int run_devices(bool is_json) {
         print_output("{}\n", write_json(list));
     } else {
         print_output("cpu     {} threads  {}\n", threads, fmt::join(isas, " "));
-        print_traversals(EngineKind::cpu);
-        for (const DeviceInfo& device : devices) print_device(device);
-        if (!devices.empty()) print_traversals(EngineKind::vulkan);
+        if (!options.is_quiet) print_traversals(EngineKind::cpu);
+        for (const DeviceInfo& device : devices) {
+            print_device(device);
+            if (!options.is_quiet) print_methods(device);
+        }
+        if (!devices.empty() && !options.is_quiet) print_traversals(EngineKind::vulkan);
     }
     return kExitDone;
 }
@@ -212,9 +222,10 @@ Command add_scene(CLI::App& verb) {
 }
 
 Command add_devices(CLI::App& verb) {
-    const auto is_json = std::make_shared<bool>(false);
-    verb.add_flag("--json", *is_json, "print a JSON array");
-    return [is_json] { return run_devices(*is_json); };
+    const auto options = std::make_shared<DevicesOptions>();
+    verb.add_flag("--json", options->is_json, "print a JSON array");
+    verb.add_flag("-q", options->is_quiet, "one line per device, without methods and traversals");
+    return [options] { return run_devices(*options); };
 }
 
 } // namespace relief::cli

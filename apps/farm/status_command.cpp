@@ -24,7 +24,7 @@ namespace {
 
 struct StatusOptions {
     std::string folder, sheet;
-    bool is_watched = false, is_json = false;
+    bool is_watched = false, is_json = false, is_quiet = false;
 };
 
 void print_status(const FarmJob& job, const StatusReport& report, const StatusOptions& options) {
@@ -34,7 +34,7 @@ void print_status(const FarmJob& job, const StatusReport& report, const StatusOp
                                               : write_json(describe_status(job, report), 2));
     else
         print_output("{}{}", options.is_watched && ::isatty(STDOUT_FILENO) ? kClear : "",
-                     format_status(job, report));
+                     format_status(job, report, options.is_quiet ? StatusDetail::counts : StatusDetail::all));
 }
 
 /// In short steps, so that an interrupt ends it soon.
@@ -56,7 +56,7 @@ int run_status(const StatusOptions& options) {
     }
     if (options.sheet.empty()) return kExitDone;
     write_image(make_sheet(job, report.states), options.sheet);
-    print_error("wrote {}\n", options.sheet);
+    if (!options.is_quiet) print_error("wrote {}\n", options.sheet);
     return kExitDone;
 }
 
@@ -67,6 +67,7 @@ Command add_farm_status(CLI::App& verb) {
     add_job_argument(verb, options->folder);
     verb.add_flag("--watch", options->is_watched, "again every two seconds, until all frames are written");
     verb.add_flag("--json", options->is_json, "print a JSON object; with --watch one a line");
+    verb.add_flag("-q", options->is_quiet, "only the counts of tasks and frames");
     verb.add_option("--sheet", options->sheet, "picture of what is there: small frames side by side")
         ->type_name("FILE");
     return [options] { return run_status(*options); };

@@ -126,7 +126,7 @@ StatusReport make_status(const FarmJob& job) {
     return report;
 }
 
-std::string format_status(const FarmJob& job, const StatusReport& r) {
+std::string format_status(const FarmJob& job, const StatusReport& r, StatusDetail detail) {
     const JobStates& s = r.states;
     std::string text = fmt::format(
         "tasks   {} of {} done, {} running, {} stale, {} failed, {} partial, {} waiting\n",
@@ -134,6 +134,7 @@ std::string format_status(const FarmJob& job, const StatusReport& r) {
         s.count(TaskState::failed), s.count(TaskState::partial), s.count(TaskState::waiting));
     text += fmt::format("frames  {} of {} done, {} begun, {} written to {}\n", r.frames_done, r.frame_count,
                         r.frames_begun, r.frames_written, job.pictures.string());
+    if (detail == StatusDetail::counts) return text;
     if (r.rays_per_second > 0)
         text += fmt::format("speed   {:.3g} Mray/s{}\n", 1e-6 * r.rays_per_second,
                             r.left_s && *r.left_s > 0 ? ", " + format_duration(*r.left_s) + " left" : "");

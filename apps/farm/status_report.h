@@ -29,8 +29,10 @@ struct StatusReport {
 
 StatusReport make_status(const FarmJob& job);
 
+enum class StatusDetail { counts, all };
+
 /// Lines for people.
-std::string format_status(const FarmJob& job, const StatusReport& report);
+std::string format_status(const FarmJob& job, const StatusReport& report, StatusDetail detail);
 /// The same as one record; docs/farm.md lists its keys.
 Value describe_status(const FarmJob& job, const StatusReport& report);
 

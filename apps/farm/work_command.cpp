@@ -41,6 +41,7 @@ Command add_farm_work(CLI::App& verb) {
             "0: as the job says (default)")
         ->type_name("N");
     verb.add_flag("--log", arguments->work.is_logged, "print to JOB/log in place of the terminal");
+    verb.add_flag("-q", arguments->work.is_quiet, "no progress, no warnings on stderr");
     verb.add_flag("--again", arguments->work.is_repeated, "also tasks that are done");
     return [arguments] { return run_work(*arguments); };
 }

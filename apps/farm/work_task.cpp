@@ -167,6 +167,7 @@ int work_on_task(const FarmJob& job, const FarmTask& task, const WorkOptions& wo
     try {
         check_version(job);
         RenderOptions options = make_render_options(job, work.threads);
+        if (work.is_quiet) options.progress.is_quiet = true;
         options.is_denoised = false; // the whole picture is, when it is merged
         int exit_code = kExitDone;
         with_io_threads(options.settings.device.threads,

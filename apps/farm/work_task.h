@@ -11,6 +11,7 @@ namespace relief::cli {
 struct WorkOptions {
     int threads = 0;          ///< 0: as the job says
     bool is_logged = false;   ///< what is printed goes to the log of the task
+    bool is_quiet = false;    ///< without progress and warnings, whatever the job says
     bool is_repeated = false; ///< tasks that are done are rendered again
 };
 

@@ -53,7 +53,9 @@ int run_viewer(const ViewerOptions& options, double start) {
     ScriptRunner script(std::move(lines), options.script.string(), workbench, interface.view(),
                         {[&](const InputEvent& event) { window.inject(event); },
                          [&](const std::filesystem::path& file) { window.take_screenshot(file); },
-                         [](const std::string& line) { print_output("{}\n", line), flush_output(); }});
+                         [&](const std::string& line) {
+                             if (!options.is_quiet) print_output("{}\n", line), flush_output();
+                         }});
     interface.run(&script, start);
     return end();
 }
@@ -68,7 +70,7 @@ int main(int argument_count, char** arguments) {
     const double start =
         std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     return cli::run_program([&] {
-        CLI::App app("Look at a scene, turn it, change how its maps are meant, paint on them", "relief view");
+        CLI::App app(viewer::kViewerDescription, "relief view");
         cli::prepare_parsing(app);
         viewer::ViewerOptions options;
         viewer::add_viewer_options(app, options);

@@ -41,6 +41,7 @@ void add_viewer_options(CLI::App& app, ViewerOptions& o) {
         });
     add("--script", "FILE", "do what its lines say and print times; docs/viewer.md lists them",
         [&o](const std::string& text) { o.script = text; });
+    app.add_flag("-q", o.is_quiet, "with --script: print no times");
     add("--serve", "PORT", "no window: a page for browsers on this machine at 127.0.0.1; 0: any port",
         [&o](const std::string& text) { o.port = int(cli::parse_integer("--serve", text, 0, 65535)); });
     cli::add_engine_options(app, o.engine, o.settings);

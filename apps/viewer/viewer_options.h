@@ -14,6 +14,9 @@
 
 namespace relief::viewer {
 
+inline constexpr const char* kViewerDescription =
+    "Look at a scene, turn it, change how its maps are meant, paint on them";
+
 struct ViewerOptions {
     SceneInput input; ///< without a file: an empty window
     std::vector<std::string> mesh_only;
@@ -21,6 +24,7 @@ struct ViewerOptions {
     RenderSettings settings;
     PictureDefaults given;
     std::filesystem::path script;
+    bool is_quiet = false;   ///< a script prints no times
     std::optional<int> port; ///< of a server for browsers, in place of a window
 };
 

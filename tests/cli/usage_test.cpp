@@ -364,5 +364,45 @@ TEST_F(Usage, every_help_fits_on_a_screen_and_goes_to_stdout) {
     EXPECT_TRUE(contains(run({"--version"}).output, "relief "));
 }
 
+TEST_F(Usage, programs_that_are_not_there_have_their_help) {
+    std::string expected[2];
+    const char* const verbs[] = {"view", "bench"};
+    for (int k = 0; k < 2; ++k) expected[k] = run({verbs[k], "--help-all"}).output;
+    std::filesystem::copy_file(program_, folder_ / "relief");
+    program_ = folder_ / "relief";
+    for (int k = 0; k < 2; ++k) {
+        const CommandResult help = run({verbs[k], "--help-all"});
+        EXPECT_EQ(help.exit_code, 0) << help.errors;
+        EXPECT_EQ(help.output, expected[k]);
+        EXPECT_TRUE(contains(help.output, "--engine")) << help.output;
+        EXPECT_EQ(run({verbs[k], "--version"}).exit_code, 0);
+        const CommandResult missing = run({verbs[k], "x"});
+        EXPECT_EQ(missing.exit_code, 1);
+        EXPECT_TRUE(contains(missing.errors, "build the target relief-")) << missing.errors;
+    }
+}
+
+TEST_F(Usage, every_verb_can_be_quiet) {
+    const std::vector<std::vector<std::string>> verbs = {
+        {"render"},         {"inspect"},      {"convert"},        {"scene"},         {"compare"},
+        {"merge"},          {"view"},         {"bench"},          {"devices"},       {"farm", "plan"},
+        {"farm", "submit"}, {"farm", "work"}, {"farm", "status"}, {"farm", "merge"}, {"farm", "retry"}};
+    for (std::vector<std::string> verb : verbs) {
+        verb.emplace_back("--help");
+        EXPECT_TRUE(contains(run(verb).output, "\n  -q ")) << verb[0] << " " << verb[1];
+    }
+    ASSERT_EQ(run({"render", "plane.obj", "--size", "8x8", "--spp", "2", "-o", "a.exr", "-q"}).exit_code, 0);
+    ASSERT_EQ(
+        run({"render", "plane.obj", "--size", "8x8", "--spp", "2", "--tile", "0/2", "-o", "b.exr", "-q"})
+            .exit_code,
+        0);
+    const CommandResult compared = run({"compare", "a.exr", "a.exr", "-q"});
+    EXPECT_EQ(compared.exit_code, 0);
+    EXPECT_EQ(compared.output, "");
+    EXPECT_TRUE(contains(run({"merge", "b.exr", "-o", "c.exr", "--allow-gaps"}).errors, "warning"));
+    EXPECT_EQ(run({"merge", "b.exr", "-o", "c.exr", "--allow-gaps", "-q"}).errors, "");
+    EXPECT_FALSE(contains(run({"devices", "-q"}).output, "--traversal"));
+}
+
 } // namespace
 } // namespace relief::cli

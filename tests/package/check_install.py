@@ -34,6 +34,9 @@ def read_option(name):
 has_io, has_command = read_option("RELIEF_IO"), read_option("RELIEF_IO") and read_option("RELIEF_APPS")
 with tempfile.TemporaryDirectory() as folder:
     folder = pathlib.Path(folder)
+    # What is not built is built: after `make render` only the command is. No other test needs these libraries.
+    for library in (build / "lib").glob("librelief*"):
+        library.unlink()
     components = ["runtime", "development"] + (["command"] if has_command else [])
     for component in components:
         run("cmake", "--install", build, "--prefix", folder / "first", "--component", component)
