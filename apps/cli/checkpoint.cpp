@@ -45,7 +45,10 @@ void check_checkpoint(const CheckpointOptions& options, const std::filesystem::p
         print_error("relief: warning: {} is replaced; --resume {} goes on from it\n",
                     name_film(output).string(), output.string());
     const std::filesystem::path film = name_film(options.resumed);
-    if (!options.resumed.empty() && !std::filesystem::is_regular_file(film))
+    const bool is_resumed = !options.resumed.empty();
+    if (is_resumed && !std::filesystem::exists(options.resumed) && !std::filesystem::exists(film))
+        read_image(options.resumed); // throws, with the names that may have been meant
+    if (is_resumed && !std::filesystem::is_regular_file(film))
         throw Error(ErrorKind::bad_input,
                     {"the sums of its samples are not beside it: " + film.string(), options.resumed.string(),
                      "--checkpoint keeps them; without: --samples A:B for what is missing, then "

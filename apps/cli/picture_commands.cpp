@@ -21,6 +21,8 @@
 #include "relief/error.h"
 #include "relief/image.h"
 #include "relief/io.h"
+#include "relief/shot.h"
+#include "render_frames.h"
 
 namespace relief::cli {
 
@@ -29,13 +31,13 @@ namespace {
 struct CompareOptions {
     std::string a, b, layer;
     double threshold = 0;
-    bool is_json = false;
+    bool is_json = false, is_quiet = false;
 };
 
 struct MergeOptions {
     std::vector<std::string> parts;
     std::string output;
-    bool allows_gaps = false, is_denoised = false;
+    bool allows_gaps = false, is_denoised = false, is_quiet = false;
     DisplayArguments display;
 };
 
@@ -49,7 +51,7 @@ int run_compare(const CompareOptions& options) {
             {"pixels", d.pixels}, {"one_only", d.one_only}, {"over_threshold", d.over_threshold},
             {"max", d.max},       {"mean", d.mean},         {"rms", d.rms}};
         print_output("{}\n", write_json(json));
-    } else {
+    } else if (!options.is_quiet) {
         print_output("pixels          {}\nin one only     {}\nover threshold  {}\nmax             {:.6g}\n"
                      "mean            {:.6g}\nrms             {:.6g}\n",
                      d.pixels, d.one_only, d.over_threshold, d.max, d.mean, d.rms);
@@ -104,6 +106,9 @@ int run_merge(const MergeOptions& options) {
     if (options.parts.empty() || options.output.empty())
         throw Error(ErrorKind::usage,
                     {"parts and an output file are needed", "", "relief merge A.exr B.exr -o OUT.exr"});
+    if (is_frame_pattern(options.output))
+        throw Error(ErrorKind::usage, {"a joined picture has no number of a frame", options.output,
+                                       fmt::format("-o {}", name_frame(options.output, 1).string())});
     keep_files(options.parts, options.output);
     check_display(options.display, options.output);
     check_writable(options.output);
@@ -119,7 +124,7 @@ int run_merge(const MergeOptions& options) {
                 ErrorKind::bad_input,
                 {message, options.output, "add the missing parts, or --allow-gaps to join what is there"});
         refuse_black_pixels(gaps, merged, options.output);
-        print_error("relief: warning: {}\n", message);
+        if (!options.is_quiet) print_error("relief: warning: {}\n", message);
     }
     if (denoiser) denoiser->denoise(merged);
     add_display_entries(options.display, merged);
@@ -143,6 +148,7 @@ Command add_compare(CLI::App& verb) {
             "largest difference that is accepted; default 0")
         ->type_name("F");
     verb.add_flag("--json", options->is_json, "print one JSON object");
+    verb.add_flag("-q", options->is_quiet, "print no table: the exit code tells");
     return [options] { return run_compare(*options); };
 }
 
@@ -155,6 +161,7 @@ Command add_merge(CLI::App& verb) {
                   "join parts of a picture that lack pixels or samples of it, otherwise refused");
     verb.add_flag("--denoise", options->is_denoised,
                   "by Open Image Denoise 2: parts need the layers guide_albedo, guide_N and direct");
+    verb.add_flag("-q", options->is_quiet, "no warnings on stderr");
     add_display_options(verb, options->display);
     return [options] { return run_merge(*options); };
 }

@@ -117,13 +117,26 @@ int render_scene(const RenderOptions& options, Scene scene, const Source& source
     return options.is_strict && !scene.warnings.empty() ? kExitWarnings : kExitDone;
 }
 
+/// The options with the frame's number in the names of the picture and of that which is resumed. Without a
+/// frame only `####` becomes a number, that of the first frame.
+RenderOptions name_pictures(const RenderOptions& options, std::optional<int> frame) {
+    RenderOptions one = options;
+    if (options.pixel) return one;
+    const auto name = [&](const std::filesystem::path& file) {
+        return frame || is_frame_pattern(file) ? name_frame(file, frame.value_or(1)) : file;
+    };
+    one.output = name(options.output);
+    if (!options.checkpoint.resumed.empty())
+        one.checkpoint.resumed = name(options.checkpoint.resumed).string();
+    check_checkpoint(one.checkpoint, one.output);
+    return one;
+}
+
 /// A picture of one frame, or of the file as it is where there is none. The shot is let go before a still one
 /// is rendered: it holds the text of the scene, and textures that a render would free.
 int render_frame(const RenderOptions& options, std::optional<Shot>& shot, std::optional<int> frame,
                  double start) {
-    RenderOptions one = options;
-    if (frame && !options.pixel && options.checkpoint.resumed.empty())
-        one.output = name_frame(options.output, *frame);
+    const RenderOptions one = name_pictures(options, frame);
     Scene scene = with_scene_hint(options, [&] { return shot->load(frame.value_or(1)); });
     const bool is_still = options.pixel || !options.edits.empty() || options.aim.turntable > 0 ||
                           !is_moving(*shot, scene.camera);
@@ -157,6 +170,12 @@ int render_file(const RenderOptions& options, double start) {
     return render_frames(options, {*shot, load, check}, frames, {start, 0});
 }
 
+int render_mesh(const RenderOptions& options, double start) {
+    const bool is_one = options.aim.turntable == 0 && options.edits.empty();
+    const RenderOptions one = is_one ? name_pictures(options, std::nullopt) : options;
+    return render_scene(one, load_mesh_scene(options.input, options.mesh), {}, start);
+}
+
 } // namespace
 
 Command add_render(CLI::App& verb) {
@@ -173,9 +192,7 @@ Command add_render(CLI::App& verb) {
         with_threads(options->settings.device.threads, [&] {
             catch_interrupts();
             exit_code =
-                is_mesh_file(options->input)
-                    ? render_scene(*options, load_mesh_scene(options->input, options->mesh), {}, start)
-                    : render_file(*options, start);
+                is_mesh_file(options->input) ? render_mesh(*options, start) : render_file(*options, start);
         });
         return exit_code;
     };

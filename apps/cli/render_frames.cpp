@@ -74,6 +74,7 @@ bool is_there(const RenderOptions& options, const RenderSettings& settings,
 
 /// Refuses pictures in place of files that any frame reads, and frames whose files are not there.
 void check_frames_to_come(const RenderOptions& options, const Shot& shot, const std::vector<int>& frames) {
+    check_frame_names(options.output, frames);
     std::set<std::filesystem::path> read;
     for (const int frame : frames)
         for (const std::filesystem::path& file : shot.list_files(frame)) read.insert(find_place(file));
@@ -138,6 +139,21 @@ class FrameLoop {
 };
 
 } // namespace
+
+bool is_frame_pattern(const std::filesystem::path& file) {
+    return file.filename().string().find("##") != std::string::npos;
+}
+
+void check_frame_names(const std::filesystem::path& pattern, const std::vector<int>& frames) {
+    if (frames.size() < 2 || is_frame_pattern(pattern)) return;
+    for (const int frame : frames)
+        if (name_frame(pattern, frame) == pattern)
+            throw Error(
+                ErrorKind::usage,
+                {fmt::format("this is the name of frame {}, and there are {} frames", frame, frames.size()),
+                 pattern.string(),
+                 fmt::format("-o {}.####{}", pattern.stem().stem().string(), pattern.extension().string())});
+}
 
 int render_frames(const RenderOptions& options, const FrameSource& source, const std::vector<int>& frames,
                   PendingTimes waiting) {

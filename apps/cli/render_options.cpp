@@ -383,7 +383,6 @@ void complete_render_options(RenderOptions& o) {
     const std::vector<std::string> films = list_films(o.checkpoint, o.output);
     keep_files(films, o.output), keep_files(films, o.statistics_file), keep_files(films, o.aim.saved_scene);
     check_writable(o.output);
-    check_checkpoint(o.checkpoint, o.output);
     if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/machine.h"
 #include "cli/picture_settings.h"
+#include "cli/render_frames.h"
 #include "cli/render_motion.h"
 #include "cli/render_warnings.h"
 #include "common/console.h"
@@ -92,6 +93,7 @@ std::vector<InputFile> describe_files(const std::set<fs::path>& names, WorkProgr
 
 /// Pictures of any frame that would take the place of a file that any frame reads.
 void keep_inputs(const std::set<fs::path>& files, const FarmJob& job) {
+    check_frame_names(job.pictures, job.frames);
     std::set<fs::path> places;
     for (const fs::path& file : files) places.insert(find_place(file));
     for (const int frame : job.frames)

@@ -22,7 +22,7 @@ inline constexpr size_t kMaxFrames = 1000000; ///< of one list
 std::vector<int> parse_frames(std::string_view text);
 
 /// `####` in the name of a file becomes the frame's number, with at least as many digits; where there are no
-/// two `#` in a row, ".0001" comes before the extension.
+/// two `#` in a row, ".0001" comes before the extension. A name that has this frame's ".0001" there stays.
 std::filesystem::path name_frame(const std::filesystem::path& pattern, int frame);
 
 /// A scene file and its frames. Not thread safe.

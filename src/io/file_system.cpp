@@ -39,6 +39,29 @@ bool find_drive(std::string_view path) {
            (colon == 1 || path[colon - 2] == '/');
 }
 
+bool is_number(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Frames that a name may stand for: "shot.0001.exr" for "shot.exr" and for "shot.####.exr". Empty: none.
+std::string suggest_frames(const fs::path& file, const std::vector<std::string>& names) {
+    const std::string name = file.filename().string();
+    const size_t first = name.find("##"), last = name.find_last_of('#');
+    const bool is_pattern = first != std::string::npos;
+    const std::string before = is_pattern ? name.substr(0, first) : file.stem().string() + ".";
+    const std::string after = is_pattern ? name.substr(last + 1) : file.extension().string();
+    std::vector<std::string_view> frames;
+    for (const std::string_view other : names)
+        if (other.size() > before.size() + after.size() && other.starts_with(before) &&
+            other.ends_with(after) &&
+            is_number(other.substr(before.size(), other.size() - before.size() - after.size())))
+            frames.push_back(other);
+    if (frames.empty()) return {};
+    return frames.size() == 1 ? fmt::format("did you mean '{}'?", frames.front())
+                              : fmt::format("did you mean one of its {} frames, from '{}' to '{}'?",
+                                            frames.size(), frames.front(), frames.back());
+}
+
 std::string suggest_file(const fs::path& file) {
     if (file.filename().string().find('*') != std::string::npos) return "no file has a name of this pattern";
     const std::string text = file.string();
@@ -54,6 +77,7 @@ std::string suggest_file(const fs::path& file) {
          it.increment(code))
         if (it->is_regular_file(code)) names.push_back(it->path().filename().string());
     std::sort(names.begin(), names.end());
+    if (const std::string frames = suggest_frames(file, names); !frames.empty()) return frames;
     const std::vector<std::string_view> views(names.begin(), names.end());
     const std::string hint = suggest_word(file.filename().string(), views);
     if (hint.starts_with("did")) return hint;

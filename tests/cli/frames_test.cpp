@@ -161,5 +161,52 @@ TEST_F(FramesTest, go_with_no_options_of_one_picture) {
     EXPECT_EQ(run({"render", "still.json", "--skip-existing", "-o", "m.exr"}).exit_code, 2);
 }
 
+TEST_F(FramesTest, have_names_by_one_rule) {
+    const auto render_third = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> all = {"render", "shot.json", "--frames", "3"};
+        all.insert(all.end(), more.begin(), more.end());
+        return run(all);
+    };
+    for (const char* name : {"c.exr", "c.####.exr", "c.0003.exr"}) {
+        ASSERT_EQ(render_third({"-o", name, "--checkpoint", "1"}).exit_code, 0);
+        EXPECT_TRUE(exists("c.0003.exr") && exists("c.0003.exr.film")) << name;
+        for (const char* resumed : {"c.exr", "c.####.exr", "c.0003.exr"}) {
+            const CommandResult result = render_third({"--resume", resumed, "--spp", "3"});
+            EXPECT_EQ(result.exit_code, 0) << resumed << result.errors;
+            EXPECT_EQ(result.output, "wrote c.0003.exr\n");
+        }
+        std::filesystem::remove(folder_ / "c.0003.exr"), std::filesystem::remove(folder_ / "c.0003.exr.film");
+    }
+    EXPECT_EQ(render_third({"-o", "d.0001.exr"}).output, "wrote d.0001.0003.exr\n") << "of another frame";
+    const CommandResult several = run({"render", "shot.json", "--frames", "2-3", "-o", "e.0003.exr"});
+    EXPECT_EQ(several.exit_code, 2);
+    EXPECT_TRUE(contains(several.errors, "hint: -o e.####.exr")) << several.errors;
+    EXPECT_EQ(run({"render", "plane.obj", "--size", "8x8", "--spp", "1", "-o", "m.####.exr"}).output,
+              "wrote m.0001.exr\n");
+}
+
+TEST_F(FramesTest, are_named_where_a_name_without_number_is_read) {
+    ASSERT_EQ(run({"render", "shot.json", "-o", "s.exr"}).exit_code, 0);
+    ASSERT_EQ(run({"render", "shot.json", "--frames", "7", "-o", "one.exr"}).exit_code, 0);
+    const std::string all = "did you mean one of its 3 frames, from 's.0001.exr' to 's.0003.exr'?";
+    const std::vector<std::vector<std::string>> commands = {{"compare", "s.exr", "one.0007.exr"},
+                                                            {"compare", "one.0007.exr", "s.####.exr"},
+                                                            {"merge", "s.exr", "-o", "m.exr"},
+                                                            {"inspect", "s.exr"},
+                                                            {"convert", "s.exr", "-o", "m.exr"}};
+    for (const std::vector<std::string>& command : commands) {
+        const CommandResult result = run(command);
+        EXPECT_EQ(result.exit_code, 3) << command[0];
+        EXPECT_TRUE(contains(result.errors, all)) << command[0] << ": " << result.errors;
+    }
+    EXPECT_TRUE(contains(run({"compare", "one.exr", "s.0001.exr"}).errors, "did you mean 'one.0007.exr'?"));
+    const CommandResult resumed = run({"render", "plane.obj", "--resume", "s.exr"});
+    EXPECT_EQ(resumed.exit_code, 3);
+    EXPECT_TRUE(contains(resumed.errors, all)) << resumed.errors;
+    const CommandResult merged = run({"merge", "s.0001.exr", "-o", "m.####.exr"});
+    EXPECT_EQ(merged.exit_code, 2);
+    EXPECT_TRUE(contains(merged.errors, "a joined picture has no number of a frame")) << merged.errors;
+}
+
 } // namespace
 } // namespace relief::cli

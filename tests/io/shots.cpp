@@ -132,6 +132,9 @@ TEST(FrameNumbers, are_put_into_names) {
     EXPECT_EQ(name_frame("out/shot.##.exr", 1234), "out/shot.1234.exr");
     EXPECT_EQ(name_frame("out.####/shot.exr", 7), "out.####/shot.0007.exr");
     EXPECT_EQ(name_frame("a#1.exr", 7), "a#1.0007.exr");
+    EXPECT_EQ(name_frame("a.0007.exr", 7), "a.0007.exr");
+    EXPECT_EQ(name_frame("a.0007.exr", 8), "a.0007.0008.exr");
+    EXPECT_EQ(name_frame("0007.exr", 7), "0007.0007.exr");
     EXPECT_EQ(fill_frame_number("wave.###.exr", 3.75), "wave.003.exr");
     EXPECT_EQ(fill_frame_number("take.##/#wave.####.exr", 3), "take.03/#wave.0003.exr");
 }

@@ -79,8 +79,9 @@ std::filesystem::path name_frame(const std::filesystem::path& pattern, int frame
     const std::string name = pattern.filename().string();
     const std::string filled = fill_frame_number(name, frame);
     if (filled != name) return std::filesystem::path(pattern).replace_filename(filled);
-    return std::filesystem::path(pattern).replace_filename(
-        fmt::format("{}.{:0{}}{}", pattern.stem().string(), frame, kDigits, pattern.extension().string()));
+    const std::string number = fmt::format(".{:0{}}", frame, kDigits), stem = pattern.stem().string();
+    if (stem.ends_with(number)) return pattern;
+    return std::filesystem::path(pattern).replace_filename(stem + number + pattern.extension().string());
 }
 
 } // namespace relief
