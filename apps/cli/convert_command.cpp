@@ -23,6 +23,7 @@
 #include "common/values.h"
 #include "relief/convert.h"
 #include "relief/error.h"
+#include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/render.h"
 
@@ -194,6 +195,7 @@ int convert_surface(const ConvertOptions& options) {
     progress.tell(kBeforeConversion);
     keep_files(list_files(scene), options.output);
     print_warnings(options, scene.warnings, &progress);
+    print_warnings(options, find_tile_warnings(scene), &progress);
     const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel),
                                           progress.part(kBeforeConversion, kConverted));
     write_mesh(mesh, options.output, progress.part(kConverted, 1));
@@ -231,7 +233,7 @@ void add_surface_options(CLI::App& verb, ConvertOptions& options) {
     const auto add = [&](const char* name, const char* value, const std::string& help, auto set) {
         verb.add_option_function<std::string>(name, set, help)->type_name(value)->group(kGroup);
     };
-    add("--vdm", "MAP", "the map of a mesh",
+    add("--vdm", "MAP", "the map of a mesh; may name a layer: FILE.exr:LAYER",
         [&](const std::string& text) { options.displacement_map = text; });
     verb.add_option_function<std::string>(
             "--filter",

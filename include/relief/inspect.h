@@ -79,6 +79,10 @@ Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullp
 /// speak for object space is left to render(), which warns of it. The scene must be valid.
 std::vector<Finding> find_doubtful_assumptions(const Scene& scene);
 
+/// Warnings about the UDIM tiles of the maps of a scene: files that are missing for a mesh, faces across
+/// tiles or outside of all of them. render() warns of them by itself. Indices of objects must be valid.
+std::vector<std::string> find_tile_warnings(const Scene& scene);
+
 /// Contact sheet of a scene seen by its camera, four pictures of `settings.image.width` x
 /// `settings.image.height` each: the base (with the displacement axes as red, green and blue arrows), the
 /// displaced surface, the displacement as colours (red, green, blue along t, b, n or x, y, z; grey is zero),

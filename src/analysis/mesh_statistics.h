@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "relief/scene.h"
+#include "scene/tile_use.h"
 #include "surface/mesh/join_points.h"
 
 namespace relief {
@@ -30,10 +31,8 @@ struct MeshUvs {
     size_t islands = 0;
     size_t mirrored_islands = 0, mirrored_faces = 0; ///< of negative area
     size_t flat_faces = 0;                           ///< of no area
-    std::set<int> tiles;                             ///< UDIM numbers of the middles of all faces
-    size_t outside_faces = 0;  ///< whose middle has no UDIM number: u < 0, u >= 10 or v < 0
-    size_t crossing_faces = 0; ///< that reach into more than one unit square
-    double overlap = 0;        ///< area that several faces share, over the area that any covers; [0, 1]
+    TileUse tile_use;
+    double overlap = 0; ///< area that several faces share, over the area that any covers; [0, 1]
 };
 
 /// How often each index of a mesh points nowhere, and the first value of each kind that is not finite.
@@ -41,7 +40,9 @@ struct MeshFaults {
     size_t bad_indices = 0;
     std::optional<size_t> bad_position, bad_uv, bad_normal;
     bool has_bad_counts = false; ///< corners and indices differ in number, or a face has fewer than three
-    bool is_sound() const { return bad_indices == 0 && !bad_position && !bad_uv && !bad_normal && !has_bad_counts; }
+    bool is_sound() const {
+        return bad_indices == 0 && !bad_position && !bad_uv && !bad_normal && !has_bad_counts;
+    }
 };
 
 /// What of a mesh is displaced, for people: "catmark, level 2: 4 x 4 patches a quad, ...".

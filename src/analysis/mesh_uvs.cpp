@@ -111,25 +111,14 @@ double Coverage::measure_overlap() const {
 }
 
 void note_place(const Mesh& mesh, size_t first, uint32_t size, MeshUvs& result) {
-    double u = 0, v = 0;
     Vec2f low = mesh.uvs[mesh.uv_indices[first]], high = low;
     for (uint32_t k = 0; k < size; ++k) {
         const Vec2f& uv = mesh.uvs[mesh.uv_indices[first + k]];
-        u += uv.x / size, v += uv.y / size;
         low = {std::min(low.x, uv.x), std::min(low.y, uv.y)};
         high = {std::max(high.x, uv.x), std::max(high.y, uv.y)};
     }
     result.low = {std::min(result.low.x, low.x), std::min(result.low.y, low.y)};
     result.high = {std::max(result.high.x, high.x), std::max(result.high.y, high.y)};
-    const double column = std::floor(u), row = std::floor(v);
-    const bool is_numbered = column >= 0 && column < 10 && row >= 0 && row < 900;
-    if (is_numbered)
-        result.tiles.insert(1001 + int(column) + 10 * int(row));
-    else
-        ++result.outside_faces;
-    if (double(low.x) < column || double(high.x) > column + 1 || double(low.y) < row ||
-        double(high.y) > row + 1)
-        ++result.crossing_faces;
 }
 
 /// Calls `visit` with the corners of triangles that make up the faces.
@@ -179,8 +168,13 @@ double measure_uv_overlap(const Mesh& mesh, double most_cells) {
 }
 
 MeshUvs measure_uvs(const Mesh& mesh) {
-    if (find_faces_without_uvs(mesh).count > 0) return measure_uvs(drop_faces_without_uvs(mesh));
     MeshUvs result;
+    if (find_faces_without_uvs(mesh).count > 0) {
+        result = measure_uvs(drop_faces_without_uvs(mesh));
+        result.tile_use = find_tile_use(mesh); // by the numbers of this mesh's faces
+        return result;
+    }
+    result.tile_use = find_tile_use(mesh);
     result.low = result.high = mesh.uvs[mesh.uv_indices.front()];
     std::vector<double> areas;
     size_t first = 0;

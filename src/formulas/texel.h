@@ -27,5 +27,19 @@ FN int wrap_texel(const int index, const int size, const uint wrap) {
     return rest < size ? rest : period - 1 - rest;
 }
 
+/// Texels beside a map of `size` texels that continue it where no other tile does; what is farther is not
+/// displaced.
+FN int find_tile_margin(const int size) { return 2 + size / 256; }
+
+/// Tiles that texels are looked for in on the way from one of them.
+const int kMostTileSteps = 16;
+
+/// Place of texel `index` of a map of `size` texels among the `other_size` texels of another map of its
+/// place.
+FN float scale_texel_place(const int index, const int size, const int other_size) {
+    EXACT float place = (float(index) + 0.5f) * (float(other_size) / float(size)) - 0.5f;
+    return place;
+}
+
 #include "formulas/end.h"
 #endif

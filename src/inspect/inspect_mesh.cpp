@@ -210,8 +210,8 @@ void describe_uvs(const MeshUvs& uvs, const Displacement* map, Inspection& resul
                             fmt::format("{:.2f} % of the covered area", 100 * uvs.overlap),
                             {{"", 100 * uvs.overlap, "%"}}});
     result.facts.push_back({"uv_tiles",
-                            uvs.tiles.empty() ? "none" : list_tiles(uvs.tiles),
-                            {{"", double(uvs.tiles.size()), "count"}}});
+                            uvs.tile_use.tiles.empty() ? "none" : list_tiles(uvs.tile_use.tiles),
+                            {{"", double(uvs.tile_use.tiles.size()), "count"}}});
     if (!map || !map->is_udim) return;
     std::set<int> found;
     for (const MapTile& tile : map->tiles) found.insert(tile.udim);
@@ -219,8 +219,7 @@ void describe_uvs(const MeshUvs& uvs, const Displacement* map, Inspection& resul
 }
 
 void find_missing_tiles(const MeshUvs& uvs, const Displacement& map, std::vector<Finding>& findings) {
-    std::set<int> missing = uvs.tiles;
-    for (const MapTile& tile : map.tiles) missing.erase(tile.udim);
+    const std::set<int> missing = find_missing_tiles(uvs.tile_use, map);
     if (missing.empty()) return;
     std::set<int> found;
     for (const MapTile& tile : map.tiles) found.insert(tile.udim);
@@ -235,15 +234,13 @@ void find_range_mistakes(const MeshUvs& uvs, const Displacement* map, std::vecto
     const bool has_tiles = map && map->is_udim;
     const bool is_repeated = map && (map->wrap == WrapMode::repeat || map->wrap == WrapMode::mirror);
     const bool is_outside = uvs.low.x < 0 || uvs.low.y < 0 || uvs.high.x > 1 || uvs.high.y > 1;
-    if (has_tiles && uvs.crossing_faces + uvs.outside_faces > 0)
-        add_warning(findings, "W-UVRANGE",
-                    "{} faces lie across two tiles and {} outside of all tiles (u in [0, 10), v >= 0): each "
-                    "face takes the tile of its middle; move its uvs into one tile",
-                    uvs.crossing_faces, uvs.outside_faces);
+    if (has_tiles)
+        for (const std::string& text : describe_misplaced_faces(uvs.tile_use))
+            add_warning(findings, "W-UVRANGE", "{}", text);
     if (has_tiles || is_repeated || !is_outside) return;
-    if (!map && uvs.crossing_faces == 0 && uvs.outside_faces == 0) {
+    if (!map && uvs.tile_use.crossing == 0 && uvs.tile_use.outside == 0) {
         add_note(findings, "I-UDIM", "uvs fill the tiles {}: name the map with <UDIM>",
-                 list_tiles(uvs.tiles));
+                 list_tiles(uvs.tile_use.tiles));
         return;
     }
     add_warning(findings, "W-UVRANGE",

@@ -56,6 +56,9 @@ struct PreparedMap {
     std::shared_ptr<const Texture>
         coefficients;             ///< of a smooth filter, in place of the texture; null: that itself
     SplineForm form;              ///< what they are
+    TileNeighbours neighbours{};  ///< of a tile whose coefficients depend on other tiles of its displacement
+    bool has_neighbours = false;  ///< whether it is such a tile
+    bool is_flipped = false;      ///< Displacement::flip_v
     const void* source = nullptr; ///< names the scene's image; those of one image may hold different copies
 };
 

@@ -71,6 +71,31 @@ const Texture* get_image(const PreparedMap& map) {
     return map.coefficients ? map.coefficients.get() : map.texture.get();
 }
 
+/// The tiles of one displacement that depend on each other.
+struct TiledTexels {
+    DisplacementMap map; ///< as TileSurroundings have it
+    std::vector<const PreparedMap*> maps;
+};
+
+TiledTexels list_tiles_of(const PreparedScene& scene, const PreparedMap& tile) {
+    TiledTexels tiles;
+    for (const PreparedMap& map : scene.maps) {
+        if (map.displacement != tile.displacement) continue;
+        tiles.map.tiles.push_back({map.udim, map.texture, nullptr, nullptr});
+        tiles.map.neighbours.push_back(map.neighbours);
+        tiles.maps.push_back(&map);
+    }
+    tiles.map.wrap = tile.form.wrap;
+    tiles.map.midlevel = {tile.form.outside[0], tile.form.outside[1], tile.form.outside[2]};
+    return tiles;
+}
+
+/// Tiles from one to another, to the right in the image and below.
+std::array<int, 2> find_tile_offset(const PreparedMap& from, const PreparedMap& to) {
+    const int rows = (to.udim - 1001) / 10 - (from.udim - 1001) / 10;
+    return {(to.udim - 1001) % 10 - (from.udim - 1001) % 10, from.is_flipped ? rows : -rows};
+}
+
 void join(std::vector<uint8_t>& all, const std::vector<uint8_t>& added) {
     for (size_t k = 0; k < all.size(); ++k) all[k] |= added[k];
 }
@@ -210,19 +235,37 @@ void SceneEditor::paint(const MapEdit& edit, size_t named, std::vector<Reading>&
     update_splines(prepared.texture, changed, readings);
 }
 
-/// Of the maps whose coefficients were made of `texels`.
+/// Of the maps whose coefficients were made of `texels`, and of tiles beside them.
 void SceneEditor::update_splines(const std::shared_ptr<const Texture>& texels, const TexelRectangle& changed,
                                  std::vector<Reading>& readings) {
     std::set<const Texture*> done;
-    for (const PreparedMap& map : scene_->maps) {
-        if (map.texture != texels || !map.coefficients || !done.insert(map.coefficients.get()).second)
-            continue;
+    const auto follow = [&](const PreparedMap& map, const auto& update) {
+        if (!map.coefficients || !done.insert(map.coefficients.get()).second) return;
         EditableMap& image = textures_.at(map.coefficients.get());
-        const TexelRectangle reached = update_spline(*texels, map.form, changed, *image.texture);
-        image.pyramid->update(*image.texture, reached);
+        const std::optional<TexelRectangle> reached = update(*image.texture);
+        if (!reached) return;
+        image.pyramid->update(*image.texture, *reached);
         visit_users(*image.texture, [&](uint32_t index, const Surface&, uint8_t tile) {
-            readings.push_back({index, tile, {reached}});
+            readings.push_back({index, tile, {*reached}});
         });
+    };
+    for (const PreparedMap& map : scene_->maps) {
+        if (map.texture != texels) continue;
+        if (!map.has_neighbours) {
+            follow(map, [&](Texture& coefficients) {
+                return std::optional(update_spline(*texels, map.form, changed, coefficients));
+            });
+            continue;
+        }
+        const TiledTexels tiles = list_tiles_of(*scene_, map);
+        for (size_t k = 0; k < tiles.maps.size(); ++k) {
+            const PreparedMap& other = *tiles.maps[k];
+            const TileSurroundings surroundings{tiles.map, uint8_t(k)};
+            follow(other, [&](Texture& coefficients) {
+                return update_spline_beside(*other.texture, other.form, changed, find_tile_offset(other, map),
+                                            coefficients, surroundings);
+            });
+        }
     }
 }
 

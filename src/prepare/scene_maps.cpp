@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "surface/map/displacement_map.h"
+#include "surface/mesh/tile_links.h"
 
 namespace relief {
 
@@ -107,11 +108,32 @@ void prepare_map(const Displacement& displacement, MapTile& tile, GutterFill gut
     map.displacement = displacement.name, map.udim = tile.udim;
     map.texture = tile.texture, map.gutter = std::move(gutter), map.mips = mips;
     map.form = make_spline_form(displacement);
+    map.is_flipped = displacement.flip_v;
     map.source = source;
-    if (!map.form.keeps_texels() && !meshes.empty())
+    if (!map.form.keeps_texels() && !meshes.empty() && !displacement.is_udim)
         tile.texture = map.coefficients = splines.get_or_make(tile.texture, map.form);
     prepared.scene->maps.push_back(std::move(map));
     prepared.mips.push_back(std::move(mips));
+}
+
+/// Coefficients of all tiles of a map, which depend on the tiles beside; `maps`: of its tiles, in order.
+void make_coefficients_of_tiles(const Scene& scene, std::span<const uint32_t> meshes,
+                                Displacement& displacement, std::span<PreparedMap> maps,
+                                SplineCache& splines) {
+    std::vector<TileNeighbours> links;
+    for (const uint32_t mesh : meshes)
+        join_tile_links(find_tile_links(scene.meshes[mesh], displacement.tiles, displacement.flip_v), links);
+    const bool is_linked = has_links(links);
+    const DisplacementMap texels = make_texel_map(displacement, links);
+    for (size_t k = 0; k < maps.size(); ++k) {
+        PreparedMap& map = maps[k];
+        const TileSurroundings surroundings{texels, uint8_t(k)};
+        map.coefficients = is_linked ? make_spline(map.texture, map.form, &surroundings)
+                                     : splines.get_or_make(map.texture, map.form);
+        map.has_neighbours = is_linked;
+        if (is_linked) map.neighbours = links[k];
+        displacement.tiles[k].texture = map.coefficients;
+    }
 }
 
 /// The number of a displacement's first tile among all.
@@ -165,6 +187,13 @@ void prepare_maps(Scene& scene, const SameParts& same, const SceneParts* before,
             for (size_t tile = 0; tile < displacement.tiles.size(); ++tile)
                 prepare_map(displacement, displacement.tiles[tile], std::move(gutters[k][tile]), meshes,
                             limits, splines, prepared);
+        if (displacement.is_udim && !same.images[k] && !meshes.empty() &&
+            !make_spline_form(displacement).keeps_texels()) {
+            std::vector<PreparedMap>& maps = prepared.scene->maps;
+            const size_t count = displacement.tiles.size();
+            make_coefficients_of_tiles(scene, meshes, displacement,
+                                       std::span(maps).subspan(maps.size() - count, count), splines);
+        }
         // What the surfaces get are coefficients now.
         if (is_smooth(displacement.filter) && !meshes.empty())
             displacement.filter = MapFilter::bspline, displacement.dequantize = false;

@@ -151,6 +151,9 @@ class SurfaceMaker {
                     SurfaceChange& change) {
         DisplacementMap map = make_displacement_map(displacement, object_from_world, pyramids_);
         map.longest_axis = surface.map.longest_axis;
+        map.neighbours = surface.map.neighbours;
+        if (map.flip_v != surface.map.flip_v)
+            for (TileNeighbours& beside : map.neighbours) std::swap(beside[2], beside[3]);
         if (!surface.derivatives.empty()) check_reach(displacement.name, map);
         if (!is_same_map(map, surface.map)) change.is_changed.assign(surface.patch_count(), 1);
         surface.map = std::move(map);

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "scene/face_uvs.h"
+#include "scene/tile_use.h"
 #include "scene/uv_sets.h"
 #include "surface/mesh/degenerate_faces.h"
 #include "surface/mesh/join_points.h"
@@ -16,16 +16,6 @@
 namespace relief {
 
 namespace {
-
-void warn_of_tiles(const Mesh& mesh, const Displacement& map, std::vector<std::string>& warnings) {
-    if (!map.is_udim) return;
-    std::set<int> missing = list_tiles(mesh);
-    for (const MapTile& tile : map.tiles) missing.erase(tile.udim);
-    if (missing.empty()) return;
-    warnings.push_back(fmt::format("displacement '{}' has no file for tile(s) {} of mesh '{}', which is not "
-                                   "displaced there: export the missing ones, or look at their names",
-                                   map.name, fmt::join(missing, ", "), mesh.name));
-}
 
 /// Below this level quads beside semi-sharp creases come too close to each other to be cut along them.
 constexpr int kLevelForCreases = 2;
@@ -142,7 +132,8 @@ std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSett
         if (is_joined && joined_meshes.insert(object.mesh).second) warn_of_near_edges(mesh, warnings);
         if (object.displacement == kNoIndex) continue;
         if (pairs.insert({object.mesh, object.displacement}).second)
-            warn_of_tiles(mesh, scene.displacements[object.displacement], warnings);
+            for (std::string& warning : find_tile_warnings(mesh, scene.displacements[object.displacement]))
+                warnings.push_back(std::move(warning));
         if (meshes.insert(object.mesh).second) warn_of_creases(mesh, warnings);
     }
     return warnings;

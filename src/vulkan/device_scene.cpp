@@ -158,6 +158,7 @@ uint32_t DeviceScene::uv_set_index(int number) const {
 
 std::vector<uint32_t> DeviceScene::add_filter(std::vector<uint32_t> constants) const {
     set_constant(constants, scalar::kSmoothConstant, has_smooth_ ? 1 : 0);
+    set_constant(constants, scalar::kTileBordersConstant, has_tile_borders_ ? 1 : 0);
     set_constant(constants, scalar::kBicubicConstant, has_bicubic_ ? 1 : 0);
     set_constant(constants, scalar::kShadowCatchersConstant, has_catchers_ ? 1 : 0);
     return constants;
@@ -226,7 +227,7 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});
 }
 
-void DeviceScene::add_map(const Surface& surface) {
+void DeviceScene::add_map(const Surface& surface, Arrays& arrays) {
     const DisplacementMap& map = surface.map;
     scalar::MapData data{};
     data.row0 = map.matrix[0], data.row1 = map.matrix[1], data.row2 = map.matrix[2];
@@ -236,6 +237,11 @@ void DeviceScene::add_map(const Surface& surface) {
     data.is_tangent = map.is_tangent;
     data.is_smooth = map.is_smooth;
     has_smooth_ |= map.is_smooth;
+    data.first_neighbour = map.neighbours.empty() ? kNone : uint32_t(arrays.override_bits.size());
+    has_tile_borders_ |= !map.neighbours.empty();
+    for (const TileNeighbours& beside : map.neighbours)
+        arrays.override_bits.push_back(uint32_t(beside[0]) | uint32_t(beside[1]) << 8 |
+                                       uint32_t(beside[2]) << 16 | uint32_t(beside[3]) << 24);
     // Tiles of a map must be consecutive, so tiles shared with another map are listed again.
     data.first_tile = uint32_t(tables_.textures.size());
     data.tile_count = uint32_t(map.tiles.size());
@@ -302,7 +308,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         data.first_uv_set = add_uv_sets(surface, arrays);
         data.has_bilinear_uvs = surface.has_bilinear_uvs ? 1 : 0;
         data.map = surface.has_displacement ? uint32_t(tables_.maps.size()) : kNone;
-        if (surface.has_displacement) add_map(surface);
+        if (surface.has_displacement) add_map(surface, arrays);
         has_polygons_ |= !surface.has_displacement;
         tables_.surfaces.push_back(data);
     }

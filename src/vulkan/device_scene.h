@@ -39,8 +39,8 @@ class DeviceScene {
     uint32_t texture_index(const Texture* texture) const;
     /// InputTextureData::uv_set of a number of a set; scalar::kNone: no surface has it beside its own.
     uint32_t uv_set_index(int number) const;
-    /// Constants of a kernel that reads maps or textures, or adds to the film, with scalar::kSmoothConstant
-    /// and kShadowCatchersConstant where the scene needs them.
+    /// Constants of a kernel that reads maps or textures, or adds to the film, with scalar::kSmoothConstant,
+    /// kTileBordersConstant and kShadowCatchersConstant where the scene needs them.
     std::vector<uint32_t> add_filter(std::vector<uint32_t> constants) const;
     /// Constants of a kernel that walks the scene trees, with scalar::kPolygonsConstant, kTilesConstant and
     /// kRayLodConstant.
@@ -64,7 +64,7 @@ class DeviceScene {
     };
     struct Arrays;
     void add_textures(const Device& device, const PreparedScene& scene);
-    void add_map(const Surface& surface);
+    void add_map(const Surface& surface, Arrays& arrays);
     void add_surfaces(const PreparedScene& scene, Arrays& arrays);
     /// Returns SurfaceData::first_uv_set.
     uint32_t add_uv_sets(const Surface& surface, Arrays& arrays) const;
@@ -83,6 +83,7 @@ class DeviceScene {
     size_t node_count_ = 0;
     bool has_smooth_ = false, has_layers_ = false, has_normal_maps_ = false, has_glass_ = false;
     bool has_catchers_ = false, has_bicubic_ = false, has_polygons_ = false, has_tiles_ = false;
+    bool has_tile_borders_ = false;
     Terminators terminators_ = Terminators::none;
     bool has_input_textures_ = false, has_anisotropy_ = false;
     struct Binding {

@@ -288,6 +288,26 @@ TEST(Session, follows_a_map_that_is_two_tiles) {
     }
 }
 
+TEST(Session, follows_edits_at_the_border_of_a_tile_that_another_one_continues) {
+    for (const MapFilter filter : {MapFilter::none, MapFilter::cubic}) {
+        Scene fresh = make_rough_torus(DisplacementSpace::tangent);
+        Displacement& map = fresh.displacements[0];
+        for (Vec2f& uv : fresh.meshes[0].uvs) uv.x = 2 * uv.x + 0.03f; // some faces lie across both
+        map.is_udim = true, map.wrap = WrapMode::clamp, map.filter = filter;
+        map.tiles.push_back({1002, test::make_random_map(50, 64, 0.05f, 9)});
+        map.tiles.push_back({1003, map.tiles[1].texture});
+        RenderSettings settings = make_session_settings();
+        Session session(fresh, settings);
+        session.render();
+        for (const float height : {0.3f, 0.0f}) {
+            const MapEdit edit = make_edit(90, 20, 6, 10, height);
+            session.edit(edit);
+            bake(fresh, edit);
+            expect_same(session.render().image, render(fresh, settings).image);
+        }
+    }
+}
+
 TEST(Session, follows_edits_that_no_picture_shows_and_edits_that_leave_the_scene) {
     Scene fresh = make_rough_torus(DisplacementSpace::tangent);
     Session session(fresh, make_session_settings());

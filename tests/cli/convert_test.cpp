@@ -37,6 +37,40 @@ TEST_F(Convert, a_map_goes_to_another_program_and_back) {
     EXPECT_EQ(compare("b.exr", "bump.exr"), 0);
 }
 
+TEST_F(Convert, warns_of_tiles_as_render_and_inspect_do) {
+    write("far.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 10 0\nvt 11 0\nvt 11 1\nvt 10 1\n"
+                     "f 1/1 2/2 3/3 4/4\n");
+    write("across.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt .5 0\nvt 1.5 0\nvt 1.5 1\nvt .5 1\n"
+                        "f 1/1 2/2 3/3 4/4\n");
+    write("missing.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 5 0\nvt 6 0\nvt 6 1\nvt 5 1\n"
+                         "f 1/1 2/2 3/3 4/4\n");
+    for (const int udim : {1001, 1002})
+        std::filesystem::copy(folder_ / "bump.exr", folder_ / ("t." + std::to_string(udim) + ".exr"));
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"far.obj", "outside of all tiles"},
+        {"across.obj", "across two tiles"},
+        {"missing.obj", "no file for tile(s) 1006"}};
+    for (const auto& [mesh, part] : cases) {
+        const std::vector<std::string> map = {"--vdm", "t.<UDIM>.exr", "--preset", "genvdm"};
+        const auto with_map = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+            arguments.insert(arguments.end(), map.begin(), map.end());
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            return run(arguments);
+        };
+        const CommandResult converted = with_map({"convert", mesh}, {"--level", "1", "-o", "o.ply"});
+        EXPECT_EQ(converted.exit_code, 0) << converted.errors;
+        EXPECT_TRUE(contains(converted.errors, part)) << converted.errors;
+        const CommandResult inspected = with_map({"inspect", mesh}, {"--strict"});
+        EXPECT_EQ(inspected.exit_code, 6) << inspected.errors;
+        EXPECT_TRUE(contains(inspected.output, part)) << inspected.output;
+        EXPECT_FALSE(contains(inspected.output, "the map needs <UDIM>")) << inspected.output;
+        const CommandResult rendered =
+            with_map({"render", mesh}, {"--size", "8x8", "--spp", "1", "--strict", "-o", "o.png"});
+        EXPECT_EQ(rendered.exit_code, 6) << rendered.errors;
+        EXPECT_TRUE(contains(rendered.errors, part)) << rendered.errors;
+    }
+}
+
 TEST_F(Convert, integers_take_a_scale_that_fits_and_say_it) {
     const CommandResult there = run({"convert", "bump.exr", "--from", "genvdm", "-o", "w.png"});
     ASSERT_EQ(there.exit_code, 0) << there.errors;

@@ -78,9 +78,11 @@ void expect_tree_of_definition(const Surface& surface, uint32_t patch, const Pat
 }
 
 void expect_definition(const Displacement& displacement, SubdivisionScheme scheme = SubdivisionScheme::none,
-                       bool has_mips = false) {
+                       bool has_mips = false, const Vec2f& tile_shift = {}) {
     Scene scene = test::make_body_scene(test::make_torus(4, 6), displacement);
     scene.camera.from = {1.6f, 0.1f, 0.1f};
+    if (displacement.is_udim)
+        for (Vec2f& uv : scene.meshes[0].uvs) uv = {2 * uv.x + tile_shift.x, 2 * uv.y + tile_shift.y};
     scene.meshes[0].subdivision.scheme = scheme;
     scene.meshes[0].subdivision.level = 0;
     if (displacement.frame == FrameKind::file) test::add_flat_normals(scene.meshes[0]);
@@ -128,6 +130,22 @@ TEST(Evaluation, is_the_definition_for_half_maps_height_maps_and_missing_tiles) 
     displacement.is_udim = true;
     displacement.tiles[0].udim = 1002; // the mesh lies on 1001: nothing is displaced
     expect_definition(displacement);
+}
+
+TEST(Evaluation, is_the_definition_of_maps_with_tiles_and_of_faces_across_them) {
+    for (const MapFilter filter : {MapFilter::none, MapFilter::cubic, MapFilter::mip})
+        for (const float shift : {0.0f, 0.1f})
+            for (const bool is_small : {false, true}) {
+                Displacement displacement = test::make_displacement(
+                    test::make_random_map(is_small ? 9 : 60, 16, 0.1f, 3), DisplacementSpace::tangent);
+                displacement.is_udim = true, displacement.filter = filter;
+                displacement.midlevel = {0.01f, -0.02f, 0.03f};
+                displacement.flip_v = is_small;
+                displacement.tiles.push_back({1002, test::make_random_map(60, 16, 0.1f, 4)});
+                displacement.tiles.push_back({1011, test::make_random_map(31, 40, 0.1f, 5)});
+                expect_definition(displacement, SubdivisionScheme::none, false, {shift, 2 * shift});
+                if (testing::Test::HasFatalFailure()) return;
+            }
 }
 
 TEST(Evaluation, is_the_definition_of_filtered_maps) {

@@ -24,7 +24,7 @@ namespace {
 constexpr uint64_t kRaysABatch = 4096;
 
 enum class Body { sphere, torus, creased };
-enum class Uvs { everywhere, missing_on_some_faces, in_two_tiles };
+enum class Uvs { everywhere, missing_on_some_faces, in_two_tiles, across_tiles };
 enum class Placement { single, instances };
 enum class BaseLevels { fixed, automatic };
 
@@ -106,6 +106,11 @@ const LeakCase kLeakCases[] = {
     {"automatic_torus_with_faces_without_uvs_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel,
      Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::none,
      Uvs::missing_on_some_faces, BaseLevels::automatic},
+    {"torus_across_tiles_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::none, FrameKind::mikk, FrameLengths::absolute, MapFilter::none, Uvs::across_tiles},
+    {"cubic_torus_across_tiles_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel, Placement::single,
+     SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic,
+     Uvs::across_tiles},
     {"automatic_torus_in_two_tiles_auto", Body::torus, DisplacementSpace::tangent, kAutoLevel,
      Placement::single, SubdivisionScheme::catmark, FrameKind::mikk, FrameLengths::absolute, MapFilter::cubic,
      Uvs::in_two_tiles, BaseLevels::automatic},
@@ -154,6 +159,8 @@ Scene make_scene(const LeakCase& c) {
     if (c.uvs == Uvs::missing_on_some_faces) test::remove_uvs(mesh, 5);
     if (c.uvs == Uvs::in_two_tiles)
         for (Vec2f& uv : mesh.uvs) uv.x *= 2;
+    if (c.uvs == Uvs::across_tiles) // the third tile has no file
+        for (Vec2f& uv : mesh.uvs) uv = {2 * uv.x + 0.05f, uv.y + 0.03f};
     mesh.subdivision.scheme = c.scheme;
     mesh.subdivision.level = c.base == BaseLevels::automatic ? kAutoSubdivisionLevel
                              : c.body == Body::sphere        ? 1
@@ -164,7 +171,7 @@ Scene make_scene(const LeakCase& c) {
         test::make_displacement(test::make_random_map(256, 192, c.body == Body::torus ? 0.06f : 0.12f, 21),
                                 c.space));
     scene.displacements[0].filter = c.filter;
-    if (c.uvs == Uvs::in_two_tiles) {
+    if (c.uvs == Uvs::in_two_tiles || c.uvs == Uvs::across_tiles) {
         scene.displacements[0].is_udim = true;
         scene.displacements[0].tiles.push_back({1002, test::make_random_map(160, 224, 0.06f, 22)});
     }

@@ -163,7 +163,9 @@ TEST(MeshInspection, uvs_outside_need_tiles_or_a_map_that_repeats) {
     for (Vec2f& uv : mesh.uvs) uv.x -= 0.5f;
     EXPECT_TRUE(has_code(inspect_mesh(mesh), "W-UVRANGE")) << "faces across two squares are no tiles";
     const Displacement tiles = make_tiles({1001, 1002});
-    EXPECT_HAS_PART(find_text(inspect_mesh(mesh, &tiles), "W-UVRANGE"), "across two tiles");
+    EXPECT_HAS_PART(find_text(inspect_mesh(mesh, &tiles), "W-UVRANGE"), "lie across two tiles or more");
+    for (Vec2f& uv : mesh.uvs) uv.x -= 7.5f;
+    EXPECT_HAS_PART(find_text(inspect_mesh(mesh, &tiles), "W-UVRANGE"), "outside of all tiles");
 }
 
 TEST(MeshInspection, missing_tiles_are_listed) {

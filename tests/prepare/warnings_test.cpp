@@ -192,5 +192,25 @@ TEST(Warnings, name_the_tiles_that_have_no_file) {
     EXPECT_NE(warnings[0].find("tile(s) 1002 of mesh 'torus'"), std::string::npos) << warnings[0];
 }
 
+TEST(Warnings, name_faces_across_tiles_and_outside_of_all_tiles) {
+    Scene scene = test::make_body_scene(
+        test::make_torus(4, 6),
+        test::make_displacement(test::make_random_map(8, 8, 0.1f, 1), DisplacementSpace::object));
+    scene.environment.emplace();
+    scene.displacements[0].is_udim = true;
+    scene.displacements[0].tiles.push_back({1002, scene.displacements[0].tiles[0].texture});
+    Mesh& mesh = scene.meshes[0];
+    for (Vec2f& uv : mesh.uvs) uv.x += 0.9f;
+    std::vector<std::string> warnings = prepare_scene(scene, {})->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("faces lie across two tiles or more"), std::string::npos) << warnings[0];
+    for (Vec2f& uv : mesh.uvs) uv.x += 9.1f;
+    warnings = prepare_scene(scene, {})->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("24 faces lie outside of all tiles"), std::string::npos) << warnings[0];
+    for (Vec2f& uv : mesh.uvs) uv.x += 1e-6f - 10; // the rounding of a file
+    EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());
+}
+
 } // namespace
 } // namespace relief

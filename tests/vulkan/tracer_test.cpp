@@ -26,6 +26,7 @@ struct TracerCase {
     FrameKind frame = FrameKind::mikk;
     FrameLengths lengths = FrameLengths::absolute;
     MapFilter filter = MapFilter::none;
+    bool has_tiles = false; ///< of two sizes, with faces across both and into one that is missing
 };
 
 void PrintTo(const TracerCase& c, std::ostream* stream) { *stream << c.name; }
@@ -45,6 +46,11 @@ TEST_P(VulkanTracerTest, gives_the_hits_of_the_cpu_engine) {
     source.meshes[0].subdivision.scheme = c.scheme;
     source.meshes[0].subdivision.level = 1;
     source.displacements[0].filter = c.filter;
+    if (c.has_tiles) {
+        for (Vec2f& uv : source.meshes[0].uvs) uv = {2 * uv.x + 0.05f, uv.y + 0.03f};
+        source.displacements[0].is_udim = true;
+        source.displacements[0].tiles.push_back({1002, test::make_random_map(50, 70, 0.1f, 8)});
+    }
     test::set_frames(source, c.frame, c.lengths);
     const std::shared_ptr<const PreparedScene> scene = prepare_scene(std::move(source), settings);
     const std::vector<cpu::TraceRay> rays = make_rays(c.rays, 7);
@@ -105,6 +111,14 @@ INSTANTIATE_TEST_SUITE_P(
                    .level = 6,
                    .scheme = SubdivisionScheme::catmark,
                    .filter = MapFilter::bspline},
+        TracerCase{.name = "faces_across_tiles", .has_tiles = true},
+        TracerCase{.name = "faces_across_tiles_cubic_auto",
+                   .space = DisplacementSpace::tangent,
+                   .level = kAutoLevel,
+                   .filter = MapFilter::cubic,
+                   .has_tiles = true},
+        TracerCase{
+            .name = "faces_across_tiles_filtered", .level = 2, .filter = MapFilter::mip, .has_tiles = true},
         TracerCase{.name = "box_leaves", .leaf = LeafKind::box},
         TracerCase{.name = "box_auto", .level = kAutoLevel, .leaf = LeafKind::box},
         TracerCase{.name = "fused", .bottom = BottomForm::fused},

@@ -52,6 +52,7 @@ const std::map<uint32_t, std::string> kConstantNames = {
     {0, "group_size"},
     {scalar::kSmoothConstant, "smooth"},
     {scalar::kTileStackConstant, "tile_stack"},
+    {scalar::kTileBordersConstant, "tile_borders"},
     {scalar::kLayersConstant, "layers"},
     {scalar::kNormalMapsConstant, "normal_maps"},
     {scalar::kLightTreeConstant, "light_tree"},

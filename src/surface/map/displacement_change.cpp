@@ -5,8 +5,10 @@
 #include <tuple>
 #include <utility>
 
+#include "scene/tile_use.h"
 #include "surface/map/displacement_map.h"
 #include "surface/map/texels.h"
+#include "surface/map/tile_texels.h"
 #include "surface/map/wrapped_range.h"
 
 namespace relief {
@@ -18,8 +20,7 @@ constexpr uint32_t kStepBlock = 8; // texels per side
 constexpr int64_t kMostSteps = 1024;
 
 /// The displacement by a texel, apart from what is the same for all texels.
-std::array<float, 3> find_vector(const DisplacementMap& map, const Texture& texture, uint32_t x, uint32_t y) {
-    const std::array<float, 3> texel = read_texel(texture, x, y);
+std::array<float, 3> find_vector(const DisplacementMap& map, const std::array<float, 3>& texel) {
     std::array<float, 3> vector;
     for (size_t k = 0; k < 3; ++k)
         vector[k] = map.matrix[k].x * texel[0] + map.matrix[k].y * texel[1] + map.matrix[k].z * texel[2];
@@ -37,7 +38,7 @@ float measure_steps(const DisplacementMap& map, const Texture& texture, const Te
     float largest = 0;
     for (uint32_t y = texels.y0; y <= texels.y1; ++y)
         for (uint32_t x = texels.x0; x <= texels.x1; ++x) {
-            const std::array<float, 3> here = find_vector(map, texture, x, y);
+            const std::array<float, 3> here = find_vector(map, read_texel(texture, x, y));
             std::array<float, 3>& known = above[x - texels.x0];
             if (y > texels.y0) largest = std::max(largest, find_square(here, known));
             if (x > texels.x0) largest = std::max(largest, find_square(here, (&known)[-1]));
@@ -46,16 +47,39 @@ float measure_steps(const DisplacementMap& map, const Texture& texture, const Te
     return std::sqrt(largest);
 }
 
+/// The tile of a square; Surface::kNoTile where the map has none there.
+uint8_t find_tile(const DisplacementMap& map, double column, double row) {
+    const int udim = find_udim(column, row);
+    uint8_t index = Surface::kNoTile;
+    for (size_t k = 0; k < map.tiles.size(); ++k)
+        if (map.tiles[k].udim == udim) index = uint8_t(k);
+    return index;
+}
+
+uint64_t count_texels(const DisplacementMap& map, uint8_t tile) {
+    const Texture& texture = *map.tiles[tile].texture;
+    return uint64_t(texture.width) * texture.height;
+}
+
 } // namespace
 
 TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& uvs) {
-    const float u = std::floor((uvs[0].x + uvs[1].x + uvs[2].x + uvs[3].x) / 4);
-    const float v = std::floor((uvs[0].y + uvs[1].y + uvs[2].y + uvs[3].y) / 4);
-    TileChoice choice{Surface::kNoTile, {u, v}};
-    if (u < 0 || u > 9 || v < 0) return choice;
-    const double udim = 1001 + double(u) + 10 * double(v);
-    for (size_t k = 0; k < map.tiles.size(); ++k)
-        if (double(map.tiles[k].udim) == udim) choice.index = uint8_t(k);
+    constexpr double kMostSquares = 8; // per axis; a face across more takes the tile of its middle
+    const TileSpan span = find_tile_span(uvs);
+    const Vec2f middle{float(span.middle_column), float(span.middle_row)};
+    TileChoice choice{find_tile(map, span.middle_column, span.middle_row), middle};
+    if (span.is_one() ||
+        !(span.column1 - span.column0 < kMostSquares && span.row1 - span.row0 < kMostSquares))
+        return choice;
+    for (double row = span.row0; row <= span.row1; ++row)
+        for (double column = span.column0; column <= span.column1; ++column) {
+            const uint8_t index = find_tile(map, column, row);
+            if (index == Surface::kNoTile) continue;
+            if (choice.index != Surface::kNoTile &&
+                count_texels(map, index) <= count_texels(map, choice.index))
+                continue;
+            choice = {index, {float(column), float(row)}};
+        }
     return choice;
 }
 
@@ -105,11 +129,17 @@ double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Ve
     const auto last = [&](double high, double off, double size) {
         return int64_t(std::ceil((high + off) * size - 0.5 + reach));
     };
+    const double texels = error.x * texture.width + error.y * texture.height;
+    const std::array<int64_t, 2> read_columns = {first(u0, error.x, texture.width),
+                                                 last(u1, error.x, texture.width)},
+                                 read_rows = {first(v0, error.y, texture.height),
+                                              last(v1, error.y, texture.height)};
+    if (!map_.neighbours.empty() && !is_within_image(texture, read_columns, read_rows))
+        return std::min(2 * longest_, find_step_across_tiles(tile.index, read_columns, read_rows) * texels);
     const WrappedRange columns = wrap_range(first(u0, error.x, texture.width),
                                             last(u1, error.x, texture.width), texture.width, map_.wrap),
                        rows = wrap_range(first(v0, error.y, texture.height),
                                          last(v1, error.y, texture.height), texture.height, map_.wrap);
-    const double texels = error.x * texture.width + error.y * texture.height;
     // Beyond a border the map goes on with other values.
     if (columns.count != 1 || rows.count != 1 || columns.is_outside_read || rows.is_outside_read)
         return 2 * longest_ * std::min(1.0, texels);
@@ -120,6 +150,33 @@ double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Ve
     if (by_blocks <= enough || (x1 - x0 + 1) * (y1 - y0 + 1) > kMostSteps)
         return std::min(2 * longest_, by_blocks);
     return std::min(2 * longest_, double(measure_steps(map_, texture, read)) * texels);
+}
+
+/// The same as measure_steps() for a rectangle of a tile's grid that reaches into other tiles, or beyond
+/// them.
+double DisplacementChange::find_step_across_tiles(uint8_t tile, const std::array<int64_t, 2>& columns,
+                                                  const std::array<int64_t, 2>& rows) const {
+    const Texture& texture = *map_.tiles[tile].texture;
+    if (columns[1] - columns[0] > kMostSteps || rows[1] - rows[0] > kMostSteps ||
+        (columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > 4 * kMostSteps)
+        return 2 * longest_;
+    const auto read = [&](int64_t x, int64_t y) {
+        const std::array<float, 4> texel = is_within_image(texture, {x, x}, {y, y})
+                                               ? read_channels(texture, x, y)
+                                               : read_beyond_tile(map_, tile, 0, x, y);
+        return find_vector(map_, {texel[0], texel[1], texel[2]});
+    };
+    std::vector<std::array<float, 3>> above(size_t(columns[1] - columns[0] + 1));
+    float largest = 0;
+    for (int64_t y = rows[0]; y <= rows[1]; ++y)
+        for (int64_t x = columns[0]; x <= columns[1]; ++x) {
+            const std::array<float, 3> here = read(x, y);
+            std::array<float, 3>& known = above[size_t(x - columns[0])];
+            if (y > rows[0]) largest = std::max(largest, find_square(here, known));
+            if (x > columns[0]) largest = std::max(largest, find_square(here, (&known)[-1]));
+            known = here;
+        }
+    return std::sqrt(double(largest));
 }
 
 /// No less than the largest step between neighbours in a rectangle.

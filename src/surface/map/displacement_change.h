@@ -11,13 +11,14 @@
 
 namespace relief {
 
-/// Image of a map that a patch reads, by the middle of its uvs, and the offset of that image's tile.
+/// Image of a map that a patch reads first, and the offset of that image's tile.
 struct TileChoice {
     uint8_t index = 0;
     Vec2f offset{};
 };
 
-/// Chooses the tile of a map with UDIM tiles; Surface::kNoTile where the map has none there.
+/// Chooses the tile of a map with UDIM tiles: that of the middle of the uvs or, of a face across several, the
+/// one with most texels. Surface::kNoTile where the map has none there.
 TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& uvs);
 
 /// Bounds on the displacement of quads by their uvs, in scene units (for tangent space: with frames of unit
@@ -46,6 +47,8 @@ class DisplacementChange {
         std::vector<std::atomic<float>> steps; ///< largest step to a neighbour; negative: not known yet
     };
     float find_step(size_t tile, uint32_t x, uint32_t y) const;
+    double find_step_across_tiles(uint8_t tile, const std::array<int64_t, 2>& columns,
+                                  const std::array<int64_t, 2>& rows) const;
     float find_step_by_blocks(size_t tile, const TexelRectangle& texels) const;
 
     const DisplacementMap& map_;

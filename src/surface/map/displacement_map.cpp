@@ -1,5 +1,6 @@
 #include "surface/map/displacement_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -110,8 +111,25 @@ double find_longest_displacement(const DisplacementMap& map) {
     return std::numbers::sqrt3 * longest; // an axis is at most so much longer than its longest coordinate
 }
 
+bool has_links(const std::vector<TileNeighbours>& neighbours) {
+    return std::ranges::any_of(neighbours, [](const TileNeighbours& beside) {
+        return std::ranges::any_of(beside, [](uint8_t tile) { return tile != Surface::kNoTile; });
+    });
+}
+
+DisplacementMap make_texel_map(const Displacement& displacement, std::vector<TileNeighbours> neighbours) {
+    DisplacementMap map;
+    for (const MapTile& tile : displacement.tiles)
+        map.tiles.push_back({tile.udim, tile.texture, nullptr, nullptr});
+    map.neighbours = std::move(neighbours);
+    map.midlevel = displacement.midlevel;
+    map.wrap = displacement.wrap;
+    map.flip_v = displacement.flip_v;
+    return map;
+}
+
 DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,
-                                      PyramidCache& pyramids) {
+                                      PyramidCache& pyramids, std::vector<TileNeighbours> neighbours) {
     DisplacementMap map;
     map.matrix = make_matrix(displacement, object_from_world);
     map.midlevel = displacement.midlevel;
@@ -127,11 +145,16 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
     if (displacement.tiles.size() > size_t(kMaxMapTiles))
         throw_bad_map(displacement, fmt::format("has {} tiles", displacement.tiles.size()),
                       "at most 254 are possible");
-    for (const MapTile& tile : displacement.tiles) {
+    map.neighbours = std::move(neighbours);
+    const DisplacementMap texels = make_texel_map(displacement, map.neighbours);
+    for (size_t k = 0; k < displacement.tiles.size(); ++k) {
+        const MapTile& tile = displacement.tiles[k];
         if (!tile.texture)
             throw_bad_map(displacement, fmt::format("tile {} has no image", tile.udim), "load it first");
+        const TileSurroundings surroundings{texels, uint8_t(k)};
         const std::shared_ptr<const Texture> texture =
-            make_spline(tile.texture, make_spline_form(displacement));
+            make_spline(tile.texture, make_spline_form(displacement),
+                        has_links(map.neighbours) ? &surroundings : nullptr);
         map.tiles.push_back({tile.udim, texture, pyramids.get_or_build(texture), nullptr});
     }
     check_reach(displacement.name, map);

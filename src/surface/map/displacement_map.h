@@ -38,7 +38,14 @@ double find_longest_displacement(const DisplacementMap& map);
 
 /// Throws bad_input with the displacement's name for a map without tiles, an axis out of range, a factor that
 /// is not finite, a displacement above 1e18, and whatever BoundsPyramid::build refuses.
+/// `neighbours`: as DisplacementMap has them.
 DisplacementMap make_displacement_map(const Displacement& displacement, const Affine& object_from_world,
-                                      PyramidCache& pyramids);
+                                      PyramidCache& pyramids, std::vector<TileNeighbours> neighbours = {});
+
+/// Tiles, neighbours and convention alone, with the texels themselves: what TileSurroundings refer to.
+DisplacementMap make_texel_map(const Displacement& displacement, std::vector<TileNeighbours> neighbours);
+
+/// Whether any tile continues another one.
+bool has_links(const std::vector<TileNeighbours>& neighbours);
 
 } // namespace relief

@@ -7,6 +7,7 @@
 #include "surface/map/dequantize.h"
 #include "surface/map/texel_plane.h"
 #include "surface/map/texels.h"
+#include "surface/map/tile_texels.h"
 
 namespace relief {
 
@@ -49,11 +50,37 @@ int64_t find_reach(const SplineForm& form) {
     return (form.is_interpolating ? kReach : 0) + (form.is_dequantized ? get_dequantization_reach() : 0);
 }
 
-void compute_rectangle(const Texture& texels, const SplineForm& form, const TexelRectangle& rectangle,
-                       Texture& coefficients) {
+/// Values of other tiles outside of the image; the rest of the plane, which continues the image, stays. A
+/// tile that ends on the way is continued as load_plane() continues an image, but for WrapMode::black.
+void load_other_tiles(const Texture& texels, const TileSurroundings& surroundings, size_t channel,
+                      TexelPlane& plane) {
+    const int64_t width = texels.width, height = texels.height;
+    const DisplacementMap& map = surroundings.map;
+    const WrapMode wrap = map.wrap == WrapMode::clamp ? WrapMode::mirror : map.wrap;
+    for (int64_t y = plane.y0; y < plane.y0 + plane.height; ++y)
+        for (int64_t x = plane.x0; x < plane.x0 + plane.width; ++x) {
+            if (x >= 0 && x < width && y >= 0 && y < height) continue;
+            TilePlace place = find_tile_place(map, surroundings.tile, x, y, width, height);
+            if (place.tile == surroundings.tile) continue;
+            place.x = wrap_index(place.x, width, wrap), place.y = wrap_index(place.y, height, wrap);
+            if (place.x >= 0 && place.y >= 0)
+                *plane.at(x, y) = read_place(map, 0, place, width, height)[channel];
+        }
+}
+
+/// What coefficients are made of.
+struct SplineSource {
+    const Texture& texels;
+    const SplineForm& form;
+    const TileSurroundings* surroundings; ///< or null
+};
+
+void compute_rectangle(const SplineSource& source, const TexelRectangle& rectangle, Texture& coefficients) {
+    const auto& [texels, form, surroundings] = source;
     const int64_t reach = find_reach(form);
     for (size_t channel = 0; channel < std::min<size_t>(3, texels.channel_count); ++channel) {
         TexelPlane plane = load_plane(texels, channel, form, rectangle, reach);
+        if (surroundings) load_other_tiles(texels, *surroundings, channel, plane);
         if (form.is_dequantized) dequantize(plane, get_quantization_step(texels.source_type));
         if (form.is_interpolating) interpolate_plane(plane);
         for (uint32_t y = rectangle.y0; y <= rectangle.y1; ++y)
@@ -62,7 +89,7 @@ void compute_rectangle(const Texture& texels, const SplineForm& form, const Texe
     }
 }
 
-void compute_coefficients(const Texture& texels, const SplineForm& form, const TexelRectangle& rectangle,
+void compute_coefficients(const SplineSource& source, const TexelRectangle& rectangle,
                           Texture& coefficients) {
     const auto count_parts = [](uint32_t first, uint32_t last) { return (last - first) / kSideOfPart + 1; };
     const size_t columns = count_parts(rectangle.x0, rectangle.x1),
@@ -73,7 +100,7 @@ void compute_coefficients(const Texture& texels, const SplineForm& form, const T
             part.x0 += uint32_t(k % columns) * kSideOfPart, part.y0 += uint32_t(k / columns) * kSideOfPart;
             part.x1 = std::min(rectangle.x1, part.x0 + kSideOfPart - 1);
             part.y1 = std::min(rectangle.y1, part.y0 + kSideOfPart - 1);
-            compute_rectangle(texels, form, part, coefficients);
+            compute_rectangle(source, part, coefficients);
         }
     });
 }
@@ -106,7 +133,7 @@ SplineForm make_spline_form(MapFilter filter) {
 }
 
 std::shared_ptr<const Texture> make_spline(const std::shared_ptr<const Texture>& texels,
-                                           const SplineForm& form) {
+                                           const SplineForm& form, const TileSurroundings* surroundings) {
     if (form.keeps_texels()) return texels;
     const TexelRectangle all{0, 0, texels->width - 1, texels->height - 1};
     if (!find_texel_range(*texels, all)) refuse_bad_texel(*texels, all);
@@ -118,17 +145,38 @@ std::shared_ptr<const Texture> make_spline(const std::shared_ptr<const Texture>&
     coefficients->floats.resize(coefficients->value_count());
     for (size_t k = 3; texels->stride == 4 && k < coefficients->floats.size(); k += 4)
         coefficients->floats[k] = 1;
-    compute_coefficients(*texels, form, all, *coefficients);
+    compute_coefficients({*texels, form, surroundings}, all, *coefficients);
     return coefficients;
 }
 
 TexelRectangle update_spline(const Texture& texels, const SplineForm& form, const TexelRectangle& changed,
-                             Texture& coefficients) {
+                             Texture& coefficients, const TileSurroundings* surroundings) {
     const int64_t reach = find_reach(form);
     const auto columns = extend(changed.x0, changed.x1, texels.width, reach, form.wrap);
     const auto rows = extend(changed.y0, changed.y1, texels.height, reach, form.wrap);
     const TexelRectangle reached{columns[0], rows[0], columns[1], rows[1]};
-    compute_coefficients(texels, form, reached, coefficients);
+    compute_coefficients({texels, form, surroundings}, reached, coefficients);
+    return reached;
+}
+
+std::optional<TexelRectangle> update_spline_beside(const Texture& texels, const SplineForm& form,
+                                                   const TexelRectangle& changed, std::array<int, 2> offset,
+                                                   Texture& coefficients,
+                                                   const TileSurroundings& surroundings) {
+    const int64_t reach = find_reach(form), width = texels.width, height = texels.height;
+    const auto has_size = [&](const DisplacementMap::Tile& tile) {
+        return tile.texture->width == texels.width && tile.texture->height == texels.height;
+    };
+    TexelRectangle reached{0, 0, texels.width - 1, texels.height - 1};
+    if (std::ranges::all_of(surroundings.map.tiles, has_size)) {
+        const int64_t x0 = std::max<int64_t>(int64_t(changed.x0) + offset[0] * width - reach, 0),
+                      x1 = std::min(int64_t(changed.x1) + offset[0] * width + reach, width - 1),
+                      y0 = std::max<int64_t>(int64_t(changed.y0) + offset[1] * height - reach, 0),
+                      y1 = std::min(int64_t(changed.y1) + offset[1] * height + reach, height - 1);
+        if (x0 > x1 || y0 > y1) return std::nullopt;
+        reached = {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)};
+    }
+    compute_coefficients({texels, form, &surroundings}, reached, coefficients);
     return reached;
 }
 

@@ -5,11 +5,14 @@
 #include <compare>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "relief/scene.h"
 #include "surface/map/texel_range.h"
 
 namespace relief {
+
+struct DisplacementMap;
 
 /// What becomes of the texels of an image.
 struct SplineForm {
@@ -23,18 +26,34 @@ struct SplineForm {
     friend auto operator<=>(const SplineForm&, const SplineForm&) = default;
 };
 
+/// Where the texels of an image are in a map with tiles: `map` has the texels of all of them, before they
+/// become coefficients, and their neighbours.
+struct TileSurroundings {
+    const DisplacementMap& map;
+    uint8_t tile;
+};
+
 SplineForm make_spline_form(const Displacement& displacement);
 /// Of a texture of a material: repeated.
 SplineForm make_spline_form(MapFilter filter);
 
 /// Coefficients of the spline, as floats; `texels` itself where the form keeps them. Each depends on the
 /// texels near it alone, in a fixed order of operations.
+/// `surroundings`: of a tile that others continue, or null.
 std::shared_ptr<const Texture> make_spline(const std::shared_ptr<const Texture>& texels,
-                                           const SplineForm& form);
+                                           const SplineForm& form,
+                                           const TileSurroundings* surroundings = nullptr);
 
 /// Follows new texels in a rectangle: the same bits as make_spline. Returns which coefficients were made
 /// anew.
 TexelRectangle update_spline(const Texture& texels, const SplineForm& form, const TexelRectangle& changed,
-                             Texture& coefficients);
+                             Texture& coefficients, const TileSurroundings* surroundings = nullptr);
+
+/// The same after `changed` texels of the tile that is `columns` tiles to the right in the image and `rows`
+/// below; nothing where they are too far away. The tiles have one size, or all texels are made anew.
+std::optional<TexelRectangle> update_spline_beside(const Texture& texels, const SplineForm& form,
+                                                   const TexelRectangle& changed, std::array<int, 2> offset,
+                                                   Texture& coefficients,
+                                                   const TileSurroundings& surroundings);
 
 } // namespace relief

@@ -11,6 +11,7 @@
 #include "surface/mesh/base_frames.h"
 #include "surface/mesh/polygons.h"
 #include "surface/mesh/subdivide.h"
+#include "surface/mesh/tile_links.h"
 #include "surface/mesh/vertex_frames.h"
 #include "surface/patch/surface.h"
 
@@ -288,7 +289,10 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     Surface surface;
     surface.name = mesh.name;
     surface.has_displacement = true;
-    surface.map = make_displacement_map(displacement, context.object_from_world, pyramids);
+    surface.map = make_displacement_map(displacement, context.object_from_world, pyramids,
+                                        displacement.is_udim
+                                            ? find_tile_links(mesh, displacement.tiles, displacement.flip_v)
+                                            : std::vector<TileNeighbours>());
     const DisplacementChange change(surface.map, displacement.is_udim);
     const BaseNeeds needs{BasePatches::bicubic, choose_tolerance(context, polygons), &change,
                           displacement.type == DisplacementType::vector &&

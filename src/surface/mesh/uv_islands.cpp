@@ -5,6 +5,7 @@
 
 #include "base/stop_request.h"
 #include "math/vec_double.h"
+#include "scene/tile_use.h"
 #include "surface/map/texels.h"
 
 namespace relief {
@@ -24,13 +25,6 @@ bool is_near_edge(const Point& a, const Point& b, const Point& p) {
     const double size = along.x * along.x + along.y * along.y;
     const double s = size > 0 ? std::clamp((to.x * along.x + to.y * along.y) / size, 0.0, 1.0) : 0;
     return compute_length(to.x - s * along.x, to.y - s * along.y) <= kCoverTolerance;
-}
-
-Point find_middle(std::span<const Vec2f> uvs) {
-    Point middle{};
-    const auto size = double(uvs.size());
-    for (const Vec2f& uv : uvs) middle = {middle.x + double(uv.x) / size, middle.y + double(uv.y) / size};
-    return middle;
 }
 
 /// Equal places have equal bits: -0 counts as 0.
@@ -83,9 +77,11 @@ void UvIslands::add_face(std::span<const Vec2f> uvs, std::vector<Edge>& edges) {
     if (starts_.size() % kFacesALook == 0) stop_if_asked();
     Point offset{};
     if (displacement_.is_udim) {
-        const Point middle = find_middle(uvs);
-        offset = {std::floor(middle.x), std::floor(middle.y)};
-        if (!(offset.x >= 0 && offset.x <= 9 && 1001 + offset.x + 10 * offset.y == udim_)) return;
+        offset = {double((udim_ - 1001) % 10), double((udim_ - 1001) / 10)};
+        const TileSpan span = find_tile_span(uvs);
+        if (!(span.column0 <= offset.x && offset.x <= span.column1 && span.row0 <= offset.y &&
+              offset.y <= span.row1))
+            return;
     }
     const size_t size = uvs.size(), start = corners_.size();
     for (const Vec2f& uv : uvs) {

@@ -10,6 +10,7 @@
 #include "image/texel_layout.h"
 #include "surface/map/mip_chain.h"
 #include "surface/map/texels.h"
+#include "surface/map/tile_texels.h"
 #include "surface/map/wrapped_range.h"
 
 namespace relief {
@@ -25,6 +26,10 @@ bool overlaps(const WrappedRange& range, int64_t first, int64_t last) {
     return false;
 }
 
+bool meet(const TexelRectangle& a, const TexelRectangle& b) {
+    return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
+}
+
 /// Tells whether what lies between some vertices of one tile reads what has changed.
 class MapReads {
   public:
@@ -34,7 +39,8 @@ class MapReads {
     /// In the map itself or in its copy `mip`; `reach` as for find_touched_patches.
     bool is_touched(const Surface& surface, std::span<const uint32_t> vertices, uint32_t mip,
                     float reach) const {
-        if (surface.tile(vertices[0]) != tile_) return false;
+        const uint8_t own = surface.tile(vertices[0]);
+        if (own != tile_ && (map_.neighbours.empty() || own >= map_.tiles.size())) return false;
         return is_copy_touched(surface, vertices, 0, reach) ||
                (mip > 0 && is_copy_touched(surface, vertices, mip, reach));
     }
@@ -42,7 +48,8 @@ class MapReads {
   private:
     bool is_copy_touched(const Surface& surface, std::span<const uint32_t> vertices, uint32_t mip,
                          float reach) const {
-        const Texture& texture = map_.image(tile_, mip).texture;
+        const uint8_t own = surface.tile(vertices[0]);
+        const Texture& texture = map_.image(own, mip).texture;
         const TexelRectangle& changed = changed_[std::min(size_t(mip), changed_.size() - 1)];
         double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
         for (const uint32_t vertex : vertices) {
@@ -55,15 +62,24 @@ class MapReads {
         // Uvs that run on are no farther out than the sides are long.
         const double over_x = reach * (high_x - low_x), over_y = reach * (high_y - low_y);
         low_x -= over_x, high_x += over_x, low_y -= over_y, high_y += over_y;
-        return reads(low_x, high_x, texture.width, changed.x0, changed.x1) &&
+        const std::array columns = extend(low_x, high_x), rows = extend(low_y, high_y);
+        if (!map_.neighbours.empty() && !is_within_image(texture, columns, rows))
+            return std::ranges::any_of(
+                find_tile_ranges(map_, own, mip, columns, rows).parts,
+                [&](const TileRange& part) { return part.tile == tile_ && meet(part.texels, changed); });
+        return own == tile_ && reads(low_x, high_x, texture.width, changed.x0, changed.x1) &&
                reads(low_y, high_y, texture.height, changed.y0, changed.y1);
     }
 
-    bool reads(double low, double high, int64_t size, int64_t first, int64_t last) const {
+    /// Texels that may be read between two places of an axis.
+    std::array<int64_t, 2> extend(double low, double high) const {
         const int64_t slack = map_.is_smooth ? kSmoothSlackTexels : kSlackTexels;
-        const WrappedRange range =
-            wrap_range(int64_t(std::floor(low)) - slack, int64_t(std::ceil(high)) + slack, size, map_.wrap);
-        return overlaps(range, first, last);
+        return {int64_t(std::floor(low)) - slack, int64_t(std::ceil(high)) + slack};
+    }
+
+    bool reads(double low, double high, int64_t size, int64_t first, int64_t last) const {
+        const auto [begin, end] = extend(low, high);
+        return overlaps(wrap_range(begin, end, size, map_.wrap), first, last);
     }
 
     const DisplacementMap& map_;

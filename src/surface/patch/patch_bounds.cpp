@@ -8,6 +8,7 @@
 #include <span>
 
 #include "surface/map/texel_range.h"
+#include "surface/map/tile_texels.h"
 #include "surface/map/wrapped_range.h"
 #include "surface/patch/patch_samples.h"
 
@@ -93,32 +94,46 @@ std::array<int64_t, 2> find_texels(const Interval& coordinate, double largest, d
             int64_t(std::floor(coordinate.high * size - 0.5 + slack)) + 1 + further};
 }
 
-/// Raw channel range of a texel rectangle: from texels if few, as the pyramid's blocks would widen it.
-ChannelRange find_range(const DisplacementMap& map, const DisplacementMap::ImageView& image,
-                        const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows) {
+void extend(ChannelRange& range, const ChannelRange& by) {
+    for (size_t c = 0; c < 3; ++c) {
+        range.low[c] = std::min(range.low[c], by.low[c]);
+        range.high[c] = std::max(range.high[c], by.high[c]);
+    }
+}
+
+/// Raw channel range of texels of one image: from texels if few, as the pyramid's blocks would widen it.
+ChannelRange find_image_range(const DisplacementMap::ImageView& image, const TexelRectangle& texels) {
+    const uint64_t count = uint64_t(texels.x1 - texels.x0 + 1) * (texels.y1 - texels.y0 + 1);
+    if (count <= kFewTexels)
+        if (const auto range = find_texel_range(image.texture, texels)) return *range;
+    return image.pyramid.query(texels.x0, texels.y0, texels.x1, texels.y1, WrapMode::clamp, {});
+}
+
+/// Raw channel range of a rectangle in the grid of a footprint's image, which the map continues.
+ChannelRange find_range(const Footprint& footprint, const std::array<int64_t, 2>& columns,
+                        const std::array<int64_t, 2>& rows) {
+    const DisplacementMap& map = *footprint.map;
+    const DisplacementMap::ImageView image = map.image(footprint.tile, footprint.mip);
     const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
-    const Texture& texture = image.texture;
-    if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > kFewTexels)
-        return image.pyramid.query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
-    const WrappedRange x = wrap_range(columns[0], columns[1], texture.width, map.wrap),
-                       y = wrap_range(rows[0], rows[1], texture.height, map.wrap);
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     ChannelRange range{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    const auto extend = [&](const ChannelRange& by) {
-        for (size_t c = 0; c < 3; ++c) {
-            range.low[c] = std::min(range.low[c], by.low[c]);
-            range.high[c] = std::max(range.high[c], by.high[c]);
-        }
-    };
-    if (x.is_outside_read || y.is_outside_read) extend({middle, middle});
+    if (!map.neighbours.empty() && !is_within_image(image.texture, columns, rows)) {
+        const TileRanges ranges = find_tile_ranges(map, footprint.tile, footprint.mip, columns, rows);
+        if (ranges.is_outside_read) extend(range, {middle, middle});
+        for (const TileRange& part : ranges.parts)
+            extend(range, find_image_range(map.image(part.tile, footprint.mip), part.texels));
+        return range;
+    }
+    if ((columns[1] - columns[0] + 1) * (rows[1] - rows[0] + 1) > kFewTexels)
+        return image.pyramid.query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
+    const WrappedRange x = wrap_range(columns[0], columns[1], image.texture.width, map.wrap),
+                       y = wrap_range(rows[0], rows[1], image.texture.height, map.wrap);
+    if (x.is_outside_read || y.is_outside_read) extend(range, {middle, middle});
     for (int j = 0; j < y.count; ++j)
         for (int i = 0; i < x.count; ++i) {
             const auto& [x0, x1] = x.parts[size_t(i)];
             const auto& [y0, y1] = y.parts[size_t(j)];
-            const auto part =
-                find_texel_range(texture, {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)});
-            if (!part) return image.pyramid.query(columns[0], rows[0], columns[1], rows[1], map.wrap, middle);
-            extend(*part);
+            extend(range, find_image_range(image, {uint32_t(x0), uint32_t(y0), uint32_t(x1), uint32_t(y1)}));
         }
     return range;
 }
@@ -133,12 +148,13 @@ std::array<Interval, 3> bound_displacement(const Footprint& footprint, const Int
     const auto columns = find_texels(u, footprint.largest_u, image.texture.width, map.is_smooth);
     const auto rows = find_texels(row, footprint.largest_v, image.texture.height, map.is_smooth);
     const std::array<float, 3> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z};
-    const ChannelRange range = find_range(map, image, columns, rows);
+    const ChannelRange range = find_range(footprint, columns, rows);
     std::array<Interval, 3> values;
     for (int c = 0; c < 3; ++c) {
         const Interval raw{range.low[c], range.high[c]};
-        // Weights of a spline err by 10 units together, and each of its two blends by 3 more.
-        const double units = map.is_smooth ? 32 : 8;
+        // Weights of a spline err by 10 units together, and each of its two blends by 3 more; texels of a
+        // tile of another size have been filtered before.
+        const double units = (map.is_smooth ? 32 : 8) + (map.neighbours.empty() ? 0 : 8);
         const Interval filtered = raw.widened(units * kUnit * raw.size() + kUnderflow);
         const Interval value{filtered.low - middle[c], filtered.high - middle[c]};
         values[c] = value.widened(kUnit * value.size() + kUnderflow);

@@ -5,6 +5,7 @@
 #include "formulas/levels.h"
 #include "formulas/mips.h"
 #include "surface/map/texels.h"
+#include "surface/map/tile_texels.h"
 
 namespace relief {
 
@@ -25,14 +26,17 @@ Vec3f blend_quad(const Vec3f& c0, const Vec3f& c1, const Vec3f& c2, const Vec3f&
 Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip) {
     if (tile >= map.tiles.size()) return {};
     const Texture& texture = map.image(tile, mip).texture;
-    const float x = uv.x * float(texture.width) - 0.5f;
-    const float y = (map.flip_v ? uv.y : 1.0f - uv.y) * float(texture.height) - 0.5f;
-    const float x0 = floor_texel(x), y0 = floor_texel(y);
-    const float fx = x - x0, fy = y - y0;
+    const float u = uv.x * float(texture.width) - 0.5f;
+    const float v = (map.flip_v ? uv.y : 1.0f - uv.y) * float(texture.height) - 0.5f;
+    const float x0 = floor_texel(u), y0 = floor_texel(v);
+    const float fx = u - x0, fy = v - y0;
     const std::array<float, 4> middle = {map.midlevel.x, map.midlevel.y, map.midlevel.z, 0};
     const auto read = [&](int64_t i, int64_t j) {
-        const int64_t column = wrap_index(int64_t(x0) + i, texture.width, map.wrap),
-                      row = wrap_index(int64_t(y0) + j, texture.height, map.wrap);
+        const int64_t x = int64_t(x0) + i, y = int64_t(y0) + j;
+        if (!map.neighbours.empty() && !is_within_image(texture, {x, x}, {y, y}))
+            return read_beyond_tile(map, tile, mip, x, y);
+        const int64_t column = wrap_index(x, texture.width, map.wrap),
+                      row = wrap_index(y, texture.height, map.wrap);
         return column < 0 || row < 0 ? middle : read_channels(texture, column, row);
     };
     std::array<float, 4> value;

@@ -12,6 +12,7 @@
 #include "formulas/lanes-inl.h"
 #include "surface/map/texel_lanes-inl.h"
 #include "surface/map/texels.h"
+#include "surface/map/tile_texels.h"
 #include "surface/patch/bicubic.h"
 #include "surface/patch/surface.h"
 
@@ -53,6 +54,23 @@ struct MapImage {
     uint32_t mip;
 };
 
+/// Bilinear value in the cell of texels that begins at (x, y), for maps with tiles beside each other.
+HWY_NOINLINE inline Lanes4 fetch_across_tiles(const DisplacementMap& map, const MapImage& image, int64_t x,
+                                              int64_t y, float fx, float fy) {
+    const Texture& texture = map.image(image.tile, image.mip).texture;
+    std::array<float, 4> texels[4];
+    for (int k = 0; k < 4; ++k) {
+        const int64_t column = x + (k & 1), row = y + (k >> 1);
+        texels[k] = is_within_image(texture, {column, column}, {row, row})
+                        ? read_channels(texture, column, row)
+                        : read_beyond_tile(map, image.tile, image.mip, column, row);
+    }
+    const hn::FixedTag<float, 4> d;
+    Lanes4 t[4];
+    for (int k = 0; k < 4; ++k) t[k].part[0] = hn::LoadU(d, texels[k].data());
+    return texel::filter_texels(t[0], t[1], t[2], t[3], Lanes4(fx), Lanes4(fy));
+}
+
 /// Raw channels r, g, b at sixteen uvs, bilinear.
 HWY_INLINE void fetch_raw(const DisplacementMap& map, const MapImage& image, const Lanes16& u,
                           const Lanes16& v, Lanes16 (&raw)[3]) {
@@ -71,6 +89,11 @@ HWY_INLINE void fetch_raw(const DisplacementMap& map, const MapImage& image, con
     for (int lane = 0; lane < 16; ++lane) {
         size_t left = size_t(column[lane]), right = left + 1;
         size_t top = size_t(row[lane]) * size_t(width), bottom = top + size_t(width);
+        if (!is_inside && !map.neighbours.empty()) {
+            fetch_across_tiles(map, image, column[lane], row[lane], fx[lane], fy[lane])
+                .store_unaligned(texels[lane]);
+            continue;
+        }
         if (!is_inside) {
             left = size_t(wrap_index(column[lane], width, map.wrap));
             right = size_t(wrap_index(column[lane] + 1, width, map.wrap));
@@ -158,14 +181,31 @@ HWY_INLINE texel::CubicWeights broadcast_weights(const float (&weights)[4]) {
     return {Lanes4(weights[0]), Lanes4(weights[1]), Lanes4(weights[2]), Lanes4(weights[3])};
 }
 
+/// The same as fetch_across_tiles of a smooth map.
+HWY_NOINLINE inline void fetch_spline_across_tiles(const DisplacementMap& map, const MapImage& image,
+                                                   const std::array<int64_t, 2>& cell, float fx, float fy,
+                                                   float* result) {
+    const Texture& texture = map.image(image.tile, image.mip).texture;
+    const auto read = [&](size_t i, size_t j) {
+        const int64_t x = cell[0] + int64_t(i) - 1, y = cell[1] + int64_t(j) - 1;
+        return is_within_image(texture, {x, x}, {y, y}) ? read_channels(texture, x, y)
+                                                        : read_beyond_tile(map, image.tile, image.mip, x, y);
+    };
+    const std::array<float, 4> value = filter_spline(read, fx, fy);
+    std::copy(value.begin(), value.end(), result);
+}
+
 /// Raw channels of a smooth map at sixteen places, texel by texel.
-HWY_NOINLINE inline void fetch_spline_raw(const DisplacementMap& map, const Texture& texture,
+HWY_NOINLINE inline void fetch_spline_raw(const DisplacementMap& map, const MapImage& image,
                                           const TexelLanes& place, Lanes16 (&raw)[3]) {
+    const Texture& texture = map.image(image.tile, image.mip).texture;
     const int32_t width = int32_t(texture.width), height = int32_t(texture.height);
     alignas(64) int32_t column[16], row[16];
     place.x0.store_as_integers(column), place.y0.store_as_integers(row);
     LaneQuads along, across, values;
     weigh_lanes(place.fx, along), weigh_lanes(place.fy, across);
+    alignas(64) float fractions[2][16];
+    place.fx.store(fractions[0]), place.fy.store(fractions[1]);
     // Of large uvs, whose fraction is lost: within integers, as the device has them.
     constexpr int32_t kMost = 1 << 30;
     const auto is_inside_at = [&](int32_t x, int32_t y) {
@@ -175,6 +215,11 @@ HWY_NOINLINE inline void fetch_spline_raw(const DisplacementMap& map, const Text
         column[lane] = std::clamp(column[lane], -kMost, kMost),
         row[lane] = std::clamp(row[lane], -kMost, kMost);
         bool is_inside = is_inside_at(column[lane], row[lane]);
+        if (!is_inside && !map.neighbours.empty()) {
+            fetch_spline_across_tiles(map, image, {column[lane], row[lane]}, fractions[0][lane],
+                                      fractions[1][lane], values.lane[lane]);
+            continue;
+        }
         if (!is_inside && map.wrap == WrapMode::repeat) {
             // Once for all sixteen texels, but at the borders of the map.
             column[lane] = wrap_index(column[lane], width, map.wrap);
@@ -250,7 +295,7 @@ HWY_INLINE void fetch_channels(const DisplacementMap& map, const MapImage& image
         const Texture& texture = map.image(image.tile, image.mip).texture;
         const TexelLanes place(map, texture, u, v);
         if (kSpacing == Spacing::wide || !fetch_spline_run(texture, place, raw))
-            fetch_spline_raw(map, texture, place, raw);
+            fetch_spline_raw(map, image, place, raw);
         return;
     }
     if (kSpacing == Spacing::wide || !fetch_run(map, image, u, v, raw)) fetch_raw(map, image, u, v, raw);

@@ -41,6 +41,9 @@ Vec3f unpack_normal(const PackedFrame& packed);
 
 class MipChain;
 
+/// Tiles to the left, to the right, above and below in the image; Surface::kNoTile where there is none.
+using TileNeighbours = std::array<uint8_t, 4>;
+
 /// Displacement of raw texel values: matrix (value - midlevel), in (t, b, n) or object (x, y, z).
 struct DisplacementMap {
     struct Tile {
@@ -55,6 +58,9 @@ struct DisplacementMap {
         const BoundsPyramid& pyramid;
     };
     std::vector<Tile> tiles;
+    /// Per tile of a map with UDIM tiles, else empty: where a mesh goes on beyond it
+    /// (surface/map/tile_texels.h).
+    std::vector<TileNeighbours> neighbours;
     std::array<Vec3f, 3> matrix; ///< rows; signed permutation, scale and (world space) the object's inverse
     Vec3f midlevel{};
     WrapMode wrap = WrapMode::clamp;

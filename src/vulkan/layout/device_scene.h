@@ -63,6 +63,9 @@ struct MapData {
     uint first_tile; ///< index into textures; mip levels of the tiles follow consecutively
     uint tile_count;
     uint is_smooth; ///< texels are coefficients of a uniform bicubic B-spline
+    /// Of override_bits: per tile a word with the tiles to the left, to the right, above and below, a byte
+    /// each, 255 for none (TileNeighbours); kNone: no tile continues another one.
+    uint first_neighbour;
 };
 
 /// Four channels per texel, row 0 at the top.

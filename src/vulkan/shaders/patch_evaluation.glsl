@@ -3,6 +3,7 @@
 #define RELIEF_PATCH_EVALUATION_GLSL
 
 #include "vulkan/shaders/scene.glsl"
+#include "vulkan/shaders/tile_texels.glsl"
 
 /// Attributes interpolated over a patch; the frame is zero unless the map is in tangent space.
 struct VertexData {
@@ -36,11 +37,6 @@ VertexData load_vertex(const SurfaceData s, const uint vertex) {
     return data;
 }
 
-/// Texel for a fetch; outside with kWrapBlack there is no displacement.
-vec3 load_wrapped_texel(const TextureData texture_data, const MapData map, const int column, const int row) {
-    return column < 0 || row < 0 ? map.midlevel : load_texel(texture_data, uint(column), uint(row)).xyz;
-}
-
 vec3 decode_displacement(const MapData map, const vec3 value) {
     precise vec3 raw = value - map.midlevel;
     return vec3(decode_row(raw.x, raw.y, raw.z, map.row0.x, map.row0.y, map.row0.z),
@@ -49,16 +45,13 @@ vec3 decode_displacement(const MapData map, const vec3 value) {
 }
 
 /// Value of a B-spline in the cell of coefficients that begins in column `left` and row `top`.
-vec3 fetch_spline(const TextureData texture_data, const MapData map, const int left, const int top,
-                  const vec2 fraction) {
+vec3 fetch_spline(const MapImage image, const MapData map, const int left, const int top, const vec2 fraction) {
     CubicWeights along = weigh_spline(fraction.x);
     vec3 point[4];
     for (int j = 0; j < 4; ++j) {
-        int row = wrap_texel(top + j - 1, int(texture_data.height), map.wrap);
         vec3 coefficient[4];
         for (int i = 0; i < 4; ++i)
-            coefficient[i] = load_wrapped_texel(
-                texture_data, map, wrap_texel(left + i - 1, int(texture_data.width), map.wrap), row);
+            coefficient[i] = load_map_texel(image, map, ivec2(left + i - 1, top + j - 1));
         point[j] = blend_cubic_vectors(coefficient[0], coefficient[1], coefficient[2], coefficient[3], along);
     }
     return blend_cubic_vectors(point[0], point[1], point[2], point[3], weigh_spline(fraction.y));
@@ -67,9 +60,9 @@ vec3 fetch_spline(const TextureData texture_data, const MapData map, const int l
 /// Displacement at a local uv of mip level `mip` of a tile; zero for a missing tile.
 vec3 fetch_displacement(const MapData map, const uint tile, const uint mip, const vec2 uv) {
     if (tile >= map.tile_count) return vec3(0.0);
-    TextureData texture_data = textures[map.first_tile + mip * map.tile_count + tile];
-    int width = int(texture_data.width);
-    int height = int(texture_data.height);
+    MapImage image = MapImage(textures[map.first_tile + mip * map.tile_count + tile], tile, mip);
+    int width = int(image.texels.width);
+    int height = int(image.texels.height);
     precise float x = uv.x * float(width) - 0.5;
     precise float y = (map.flip_v != 0u ? uv.y : 1.0 - uv.y) * float(height) - 0.5;
     // Beyond 2^30 a float does not resolve texels.
@@ -78,15 +71,11 @@ vec3 fetch_displacement(const MapData map, const uint tile, const uint mip, cons
     precise float fx = x - x0;
     precise float fy = y - y0;
     if (kHasSmooth != 0 && map.is_smooth != 0u)
-        return decode_displacement(map, fetch_spline(texture_data, map, int(x0), int(y0), vec2(fx, fy)));
-    int left = wrap_texel(int(x0), width, map.wrap);
-    int right = wrap_texel(int(x0) + 1, width, map.wrap);
-    int top = wrap_texel(int(y0), height, map.wrap);
-    int bottom = wrap_texel(int(y0) + 1, height, map.wrap);
-    vec3 t00 = load_wrapped_texel(texture_data, map, left, top);
-    vec3 t10 = load_wrapped_texel(texture_data, map, right, top);
-    vec3 t01 = load_wrapped_texel(texture_data, map, left, bottom);
-    vec3 t11 = load_wrapped_texel(texture_data, map, right, bottom);
+        return decode_displacement(map, fetch_spline(image, map, int(x0), int(y0), vec2(fx, fy)));
+    vec3 t00 = load_map_texel(image, map, ivec2(int(x0), int(y0)));
+    vec3 t10 = load_map_texel(image, map, ivec2(int(x0) + 1, int(y0)));
+    vec3 t01 = load_map_texel(image, map, ivec2(int(x0), int(y0) + 1));
+    vec3 t11 = load_map_texel(image, map, ivec2(int(x0) + 1, int(y0) + 1));
     vec3 value = vec3(filter_texels(t00.x, t10.x, t01.x, t11.x, fx, fy),
                       filter_texels(t00.y, t10.y, t01.y, t11.y, fx, fy),
                       filter_texels(t00.z, t10.z, t01.z, t11.z, fx, fy));

@@ -59,7 +59,7 @@ struct AllStructs {
     FIELD(s.first_derivative) FIELD(s.has_bilinear_uvs) FIELD(s.first_tangent) FIELD(s.first_uv_set)
 #define FIELDS_MAP(s) \
     FIELD3(s.row0) FIELD3(s.row1) FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) \
-    FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count) FIELD(s.is_smooth)
+    FIELD(s.is_tangent) FIELD(s.first_tile) FIELD(s.tile_count) FIELD(s.is_smooth) FIELD(s.first_neighbour)
 #define FIELDS_TEXTURE(s) \
     FIELD(s.first_texel) FIELD(s.width) FIELD(s.height) FIELD(s.channel_count) FIELD(s.is_half)
 #define FIELDS_LAYERS(s) \

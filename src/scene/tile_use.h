@@ -1,0 +1,48 @@
+// Which UDIM tiles the faces of a mesh lie in, and which faces lie in none or in several.
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "relief/scene.h"
+
+namespace relief {
+
+/// Unit squares of the uv plane that a face lies in: columns [column0, column1], rows [row0, row1].
+struct TileSpan {
+    double column0, row0, column1, row1;
+    double middle_column, middle_row; ///< square of the middle of the corners
+
+    bool is_one() const { return column0 == column1 && row0 == row1; }
+};
+
+/// Squares that the corners reach into by more than the rounding of uvs; a face that lies on a border alone
+/// belongs to the square of its middle.
+TileSpan find_tile_span(std::span<const Vec2f> uvs);
+
+/// UDIM number of a square; 0 where it has none: u < 0, u >= 10, v < 0 or beyond 9999.
+int find_udim(double column, double row);
+
+struct TileUse {
+    std::set<int> tiles;              ///< numbers of all tiles that faces reach into
+    size_t crossing = 0, outside = 0; ///< faces in several squares, and faces that reach into no tile
+    size_t first_crossing = 0, first_outside = 0; ///< index of the first, where there is one
+};
+
+/// Indices out of range and faces without uvs are left out.
+TileUse find_tile_use(const Mesh& mesh);
+
+/// Numbers of the tiles that a mesh reaches into and that a map with tiles lacks.
+std::set<int> find_missing_tiles(const TileUse& use, const Displacement& map);
+
+/// Texts about the faces of a mesh that lie across tiles of a map or outside of all of them; without names.
+std::vector<std::string> describe_misplaced_faces(const TileUse& use);
+
+/// Warnings about a mesh and its map with tiles: files that are missing, and faces across tiles or outside of
+/// all of them. Nothing for other maps.
+std::vector<std::string> find_tile_warnings(const Mesh& mesh, const Displacement& map);
+
+} // namespace relief
