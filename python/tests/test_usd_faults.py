@@ -63,6 +63,14 @@ class FaultTest(unittest.TestCase):
 
 
 class RefusedTest(FaultTest):
+    def test_the_weld_of_a_mesh_is_an_attribute(self):
+        scene = self.load(make_mesh("m", "custom double relief:weld = 0.01"))
+        self.assertEqual([mesh.weld for mesh in scene.meshes.values()], [0.01])
+        copy = os.path.join(self.folder.name, "copy.usda")
+        relief.usd.save(scene, copy)
+        self.assertEqual([mesh.weld for mesh in relief.usd.load(copy).meshes.values()], [0.01])
+        self.check_refused("/m", "distance of 0 or more", make_mesh("m", "custom double relief:weld = -1"))
+
     def test_attributes_of_displacements_that_cannot_be_meant(self):
         uvs = self.write_map()
         for words, line in (("scale is .* three", "matrix4d relief:displacement:scale = ((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))"),
