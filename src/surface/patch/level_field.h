@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "surface/patch/line_points.h"
 #include "surface/patch/surface.h"
 
 namespace relief {
@@ -15,19 +16,6 @@ struct LevelFieldConfig {
     float pixel_error = 1;     ///< cell size aimed at, pixels
     Vec3f camera{};            ///< world space
     float pixel_angle = 1e-3f; ///< size of a pixel at distance 1, scene units
-};
-
-/// A displaced line in world space, as far as its level depends on it.
-struct LineMeasure {
-    double length = 0, radius = 0; ///< of its points; of the sphere about them
-    Vec3f center{};
-    int cap = 0; ///< the highest level that the map is worth
-};
-
-/// The lines that the levels of a patch are chosen by.
-struct PatchLines {
-    std::array<LineMeasure, 4> edges;
-    std::array<LineMeasure, 2> middles; ///< along u and along v
 };
 
 /// One a patch; empty without displacement.
@@ -42,6 +30,9 @@ class LevelField {
     /// 0.
     static LevelField compute(const Surface& surface, const Affine& world_from_object,
                               const LevelFieldConfig& config);
+    /// The same from the points of all patches, for surfaces that many objects show.
+    static LevelField compute(const Surface& surface, std::span<const LinePoints> points,
+                              const Affine& world_from_object, const LevelFieldConfig& config);
 
     /// The same from lines that were measured before, so that another view takes little time.
     static LevelField choose(const Surface& surface, std::span<const PatchLines> lines,
@@ -57,17 +48,20 @@ class LevelField {
     /// All patches have the same levels.
     bool is_uniform() const { return packed_.empty(); }
     int max_level() const { return max_level_; }
+    /// Whether cells of some patch are as large as several pixels, as the map has no texels for more.
+    bool has_large_cells() const { return has_large_cells_; }
     size_t byte_count() const { return packed_.size() * sizeof(uint32_t); }
     friend bool operator==(const LevelField&, const LevelField&) = default;
 
   private:
     template <class Find>
-    static LevelField fill(const Surface& surface, const LevelFieldConfig& config, const Find& find_levels);
+    static LevelField fill(const Surface& surface, const LevelFieldConfig& config, const Find& find_lines);
     void find_max_level();
 
     std::vector<uint32_t> packed_; ///< one a patch; empty: `fixed_` everywhere
     uint32_t fixed_ = 0;
     int max_level_ = 0;
+    bool has_large_cells_ = false;
 };
 
 } // namespace relief
