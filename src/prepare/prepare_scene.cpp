@@ -41,6 +41,15 @@ void drop_detail(PreparedScene& scene) {
         for (uint32_t& word : surface.mips) word &= (1u << scalar::kDetailShift) - 1;
 }
 
+/// Whether a displaced surface has flat patches whose corners have different normals.
+bool has_bent_base(const Surface& surface) {
+    if (!surface.has_displacement || !surface.controls.empty() || surface.frames.empty()) return false;
+    for (const Quad quad : surface.quads)
+        for (const uint32_t vertex : quad.vertex)
+            if (surface.frames[vertex].normal != surface.frames[quad.vertex[0]].normal) return true;
+    return false;
+}
+
 /// Of surfaces that are not tessellated yet.
 Terminators find_terminators(const PreparedScene& scene) {
     const auto has = [&](bool has_displacement) {
@@ -48,7 +57,11 @@ Terminators find_terminators(const PreparedScene& scene) {
             return surface.has_displacement == has_displacement && !surface.frames.empty();
         });
     };
-    if (scene.levels.fixed_level >= 0 && has(true)) return Terminators::all;
+    const bool has_large_cells =
+        scene.levels.fixed_level >= 0 ||
+        std::ranges::any_of(scene.instances, [](const Instance& i) { return i.levels->has_large_cells(); });
+    if (has_large_cells && has(true)) return Terminators::all;
+    if (std::ranges::any_of(scene.surfaces, has_bent_base)) return Terminators::bases;
     return has(false) ? Terminators::polygons : Terminators::none;
 }
 

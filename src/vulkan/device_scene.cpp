@@ -100,6 +100,16 @@ struct DeviceScene::Arrays {
         return root;
     }
 
+    /// Three a position; returns SurfaceData::first_height.
+    uint32_t append_heights(std::span<const float> heights) {
+        if (heights.empty()) return kNone;
+        const uint32_t first = 3 * uint32_t(positions.size());
+        const auto height = [&](size_t k) { return k < heights.size() ? heights[k] : 0.0f; };
+        for (size_t k = 0; k < heights.size(); k += 3)
+            positions.push_back({height(k), height(k + 1), height(k + 2)});
+        return first;
+    }
+
     /// InstanceData::levels of a field that is not uniform.
     uint32_t append_levels(const LevelField& field, uint32_t patch_count) {
         const uint32_t first = uint32_t(levels.size()) | scalar::kManyLevels;
@@ -280,6 +290,7 @@ void DeviceScene::add_surfaces(const PreparedScene& scene, Arrays& arrays) {
         data.first_control = surface.controls.empty() ? kNone : uint32_t(arrays.positions.size());
         for (const InnerControls& controls : surface.controls)
             arrays.positions.insert(arrays.positions.end(), controls.begin(), controls.end());
+        data.first_height = arrays.append_heights(surface.base_heights);
         data.first_derivative = surface.derivatives.empty() ? kNone : uint32_t(arrays.positions.size());
         for (const std::array<Vec3f, 2>& derivatives : surface.derivatives)
             arrays.positions.insert(arrays.positions.end(), derivatives.begin(), derivatives.end());

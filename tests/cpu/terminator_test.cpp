@@ -33,6 +33,25 @@ void record(const char* name, const test::TerminatorError& error) {
     testing::Test::RecordProperty(std::string(name) + "_relative", std::to_string(error.relative));
 }
 
+/// Pixels whose normal is turned towards a sun, and those of them that get no light.
+struct LitPixels {
+    size_t lit = 0, black = 0;
+};
+
+LitPixels count_lit(const Image& image, const Light& sun) {
+    const Vec3f to_sun = normalize(-sun.direction);
+    const size_t n = image.find_channel("N.X").value(), green = image.find_channel("G").value();
+    LitPixels pixels;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const Vec3f normal{image.at(x, y, n), image.at(x, y, n + 1), image.at(x, y, n + 2)};
+            // Shorter ones are means over different surfaces.
+            if (length(normal) < 0.99f || dot(normal, to_sun) < 0.05f) continue;
+            ++pixels.lit, pixels.black += image.at(x, y, green) == 0;
+        }
+    return pixels;
+}
+
 TEST(Terminator, coarse_sphere_fades_like_a_fine_one) {
     for (const Light& light : {test::make_sun_at_right(), test::make_rectangle_at_right()}) {
         const Image right = render_sphere(test::make_sphere_scene(test::make_icosphere(5)), light);
@@ -67,17 +86,40 @@ TEST(Terminator, displaced_patches_at_a_low_level_fade_like_fine_ones) {
     }
 }
 
-/// Not the level, but the rule that chose it decides: pixels have no steps inside.
-TEST(Terminator, automatic_levels_stay_as_they_are) {
-    RenderSettings settings;
-    EXPECT_EQ(prepare_scene(test::make_displaced_sphere(), settings)->terminators, Terminators::none);
-    settings.surface.level = 2;
-    EXPECT_EQ(prepare_scene(test::make_displaced_sphere(), settings)->terminators, Terminators::all);
-    const auto find = [&](Mesh mesh) {
-        return prepare_scene(test::make_sphere_scene(std::move(mesh)), settings)->terminators;
+/// Faces of a base that are not subdivided stay as coarse as they are, however fine their cells are.
+TEST(Terminator, displaced_faces_that_stay_flat_are_lit_as_their_normals_say_at_all_levels) {
+    const Light sun = test::make_sun_at_right();
+    for (const SubdivisionScheme scheme : {SubdivisionScheme::none, SubdivisionScheme::bilinear})
+        for (const bool has_quads : {false, true})
+            for (const int level : {kAutoLevel, 1, 3}) {
+                const Mesh mesh = has_quads ? test::make_quad_sphere(4) : test::make_icosphere(1);
+                const LitPixels pixels =
+                    count_lit(render_sphere(test::make_flat_displaced(mesh, scheme), sun, 0, level), sun);
+                EXPECT_GT(pixels.lit, 1500u);
+                // Some at the outline; before, up to a tenth.
+                EXPECT_LE(pixels.black, pixels.lit / 200) << has_quads << ' ' << level << ' ' << int(scheme);
+            }
+}
+
+/// Pixels have no steps inside.
+TEST(Terminator, automatic_levels_of_smooth_bases_stay_as_they_are_where_cells_are_small) {
+    RenderSettings settings = make_small_settings(64, 1, 0);
+    const auto find = [&](Scene scene) {
+        test::aim_at_sphere(scene, test::make_sun_at_right());
+        return prepare_scene(std::move(scene), settings)->terminators;
     };
-    EXPECT_EQ(find(make_floor(1)), Terminators::none);
-    EXPECT_EQ(find(test::make_icosphere(1)), Terminators::polygons);
+    const auto make_flat = [](Mesh mesh) {
+        return test::make_flat_displaced(std::move(mesh), SubdivisionScheme::none);
+    };
+    EXPECT_EQ(find(test::make_displaced_sphere()), Terminators::none);
+    EXPECT_EQ(find(make_flat(test::make_icosphere(3))), Terminators::bases);
+    EXPECT_EQ(find(test::make_sphere_scene(make_floor(1))), Terminators::none);
+    EXPECT_EQ(find(test::make_sphere_scene(test::make_icosphere(1))), Terminators::polygons);
+    settings.surface.level = 2;
+    EXPECT_EQ(find(test::make_displaced_sphere()), Terminators::all);
+    // A map of few texels has large cells.
+    settings = make_small_settings(4096, 1, 0);
+    EXPECT_EQ(find(make_flat(test::make_icosphere(3))), Terminators::all);
 }
 
 /// Light that a bounce ray finds too is shared between both; from below a triangle none can.
@@ -143,7 +185,7 @@ TEST(Terminator, no_light_comes_through_what_the_surface_touches) {
 
 /// From outside into rough bodies, and from a light in the middle out of them.
 TEST(Terminator, closed_displaced_bodies_stay_closed) {
-    for (const int level : {1, 2, 3})
+    for (const int level : {kAutoLevel, 1, 2, 3})
         for (const bool is_inside : {false, true}) {
             Scene scene = test::make_body_scene(
                 test::make_cube_sphere(2),

@@ -61,6 +61,27 @@ inline Scene make_displaced_sphere() {
     return scene;
 }
 
+/// A coarse sphere whose faces stay flat, and a map that displaces nothing.
+inline Scene make_flat_displaced(Mesh mesh, SubdivisionScheme scheme) {
+    mesh.subdivision.scheme = scheme, mesh.subdivision.level = 2;
+    mesh.uvs.assign(1, {0.5f, 0.5f});
+    mesh.uv_indices.assign(mesh.position_indices.size(), 0);
+    auto map = std::make_shared<Texture>();
+    map->width = map->height = 4, map->channel_count = 3, map->source_type = SampleType::float32;
+    map->floats.assign(4 * 16, 0.0f);
+    Scene scene = make_body_scene(std::move(mesh), make_displacement(map, DisplacementSpace::object));
+    scene.materials.push_back(make_matte(0.8f));
+    scene.objects[0].material = 0;
+    return scene;
+}
+
+/// Unit sphere of quads, 6 * 4^splits of them.
+inline Mesh make_quad_sphere(int splits) {
+    Mesh mesh = make_cube_sphere(splits);
+    for (Vec3f& p : mesh.positions) p = normalize(p);
+    return mesh;
+}
+
 inline Scene make_sphere_scene(Mesh mesh) {
     Scene scene;
     add_object(scene, std::move(mesh), make_matte(0.8f));

@@ -19,13 +19,18 @@ Image render_on_device(Scene scene, RenderSettings settings) {
     return render(std::move(scene), settings).image;
 }
 
+Scene make_flat(Mesh mesh) { return test::make_flat_displaced(std::move(mesh), SubdivisionScheme::none); }
+
 TEST(DeviceTerminator, coarse_spheres_fade_as_on_the_cpu_engine) {
     struct Case {
         Scene scene;
         int level;
     };
     const Case cases[] = {{test::make_sphere_scene(test::make_icosphere(1)), kAutoLevel},
-                          {test::make_displaced_sphere(), 1}};
+                          {test::make_displaced_sphere(), 1},
+                          {make_flat(test::make_icosphere(1)), kAutoLevel},
+                          {make_flat(test::make_quad_sphere(3)), kAutoLevel},
+                          {make_flat(test::make_quad_sphere(2)), 1}};
     for (const Light& light : {test::make_sun_at_right(), test::make_rectangle_at_right()})
         for (auto [scene, level] : cases) {
             test::aim_at_sphere(scene, light);

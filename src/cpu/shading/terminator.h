@@ -12,7 +12,8 @@ struct FallingLight {
 };
 
 /// How far above the point, along the geometric normal, the smooth surface lies from which the light is seen
-/// (formulas/terminator.h); 0: it comes from above the triangle, or from below both.
+/// (formulas/terminator.h); 0: it comes from above the triangle, and from above the patch that is displaced,
+/// or from below what is smooth.
 float find_light_lift(const PreparedScene& scene, const TraceHit& hit, const SurfacePoint& point,
                       const FallingLight& light, PatchSamplesCache& patches);
 

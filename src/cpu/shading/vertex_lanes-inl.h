@@ -105,13 +105,13 @@ RELIEF_INLINE void store_light(const PointLanes& point, const Vec3& direction, c
                                cpu::VertexLanes& v) {
     const Float zero(0.0f);
     const Float lift = Float::load(v.light_lift);
-    const Bool is_lifted = lift > zero;
-    const Bool needs_shadow_ray = Float::load(v.light_pdf) > zero &&
-                                  (dot(direction, point.geometric_normal) > zero || is_lifted) &&
+    const Bool is_lifted = lift > zero, is_above = dot(direction, point.geometric_normal) > zero;
+    const Bool needs_shadow_ray = Float::load(v.light_pdf) > zero && (is_above || is_lifted) &&
                                   !is_black(toward.value);
     v.needs_shadow_ray = to_mask(needs_shadow_ray);
     store_vectors(toward.value, v.light_reflected);
-    select(is_lifted, zero, toward.pdf).store(v.light_bsdf_pdf);
+    // Paths find light from above the triangle too.
+    select(is_above, toward.pdf, select(is_lifted, zero, toward.pdf)).store(v.light_bsdf_pdf);
     const Vec3 &p = point.position, &n = point.geometric_normal;
     store_vectors(select(is_lifted, p + n * (point.position_error + lift),
                          offset_origin(p, n, point.position_error, direction)),

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "relief/error.h"
+#include "surface/mesh/base_heights.h"
 #include "surface/mesh/mikk_tangents.h"
 
 namespace relief {
@@ -21,6 +22,7 @@ SmoothBase make_base(Polygons polygons, const Subdivision& subdivision, const Ba
     bool is_all_quads = true;
     for (uint32_t face = 0; face < polygons.face_count(); ++face)
         is_all_quads = is_all_quads && polygons.face_size(face) == 4;
+    if (!is_all_quads) base.places = list_parts(polygons);
     base.polygons = is_all_quads ? std::move(polygons) : refine_to_quads(polygons);
     return base;
 }

@@ -9,6 +9,7 @@
 #include "surface/map/displacement_change.h"
 #include "surface/map/displacement_map.h"
 #include "surface/mesh/base_frames.h"
+#include "surface/mesh/base_heights.h"
 #include "surface/mesh/polygons.h"
 #include "surface/mesh/subdivide.h"
 #include "surface/mesh/tile_links.h"
@@ -96,6 +97,17 @@ PatchUvs make_patch_uvs(const Polygons& polygons, int number, const std::vector<
         for (uint32_t k = 0; k < 4; ++k)
             result.corners[face][k] = uvs[polygons.starts[face] + std::min(k, polygons.face_size(face) - 1)];
     return result;
+}
+
+/// Dominant vertices are those of the positions that are used, whose numbers store_patches() has changed.
+void copy_base_heights(Surface& surface, const FramedBase& framed) {
+    const std::vector<float> heights = find_base_heights(framed);
+    if (heights.empty()) return;
+    surface.base_heights.resize(surface.positions.size());
+    for (uint32_t patch = 0; patch < surface.patch_count(); ++patch)
+        for (uint32_t k = 0; k < 4; ++k)
+            surface.base_heights[surface.dominant(surface.quads[patch].vertex[k])] =
+                heights[framed.base.polygons.points[4 * patch + k]];
 }
 
 void copy_further_uvs(Surface& surface, const Polygons& polygons) {
@@ -306,6 +318,7 @@ Surface make_displaced(const Mesh& mesh, const Displacement& displacement, const
     if (displacement.is_udim && std::ranges::find(uv_sets, kOwnUvSet) != uv_sets.end())
         surface.further_uvs.push_back(
             make_patch_uvs(framed.base.polygons, kOwnUvSet, framed.base.polygons.uvs));
+    copy_base_heights(surface, framed);
     surface.controls = std::move(framed.base.controls);
     surface.base_reserve = framed.base.reserve;
     if (mesh.subdivision.level == kAutoSubdivisionLevel) surface.most_base_cells = kCellsOfFace;

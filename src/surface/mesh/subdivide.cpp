@@ -134,6 +134,7 @@ SmoothBase subdivide(const Polygons& polygons, const Subdivision& subdivision, c
     base.polygons = make_quads(refined, polygons);
     if (subdivision.scheme == SubdivisionScheme::bilinear) {
         base.polygons.positions = mesh.compute_points();
+        base.places = refined.places;
         return base;
     }
     LimitPatches patches = make_limit_patches(mesh, refined, needs.patches == BasePatches::bicubic);

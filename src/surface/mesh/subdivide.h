@@ -5,6 +5,7 @@
 
 #include "surface/mesh/base_needs.h"
 #include "surface/mesh/polygons.h"
+#include "surface/mesh/quad_place.h"
 #include "surface/patch/surface.h"
 
 namespace relief {
@@ -14,6 +15,7 @@ struct SmoothBase {
     Polygons polygons;
     std::vector<Vec3f> point_normals;    ///< one a point: the mean of the sides; empty without a limit normal
     std::vector<InnerControls> controls; ///< one a face; empty: bilinear patches
+    std::vector<QuadPlace> places;       ///< per quad, where flat faces are cut into several; or empty
     BaseReserve reserve;                 ///< of automatic levels
 };
 

@@ -23,7 +23,8 @@ size_t Surface::geometry_bytes() const {
            uvs.size() * sizeof(Vec2f) + frames.size() * sizeof(PackedFrame) +
            derivatives.size() * sizeof(derivatives[0]) + corner_tangents.size() * sizeof(corner_tangents[0]) +
            vertex_tiles.size() + quads.byte_count() + mips.size() * sizeof(uint32_t) +
-           controls.size() * sizeof(InnerControls) + overrides.byte_count();
+           controls.size() * sizeof(InnerControls) + base_heights.size() * sizeof(float) +
+           overrides.byte_count();
 }
 
 } // namespace relief

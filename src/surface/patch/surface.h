@@ -100,6 +100,9 @@ struct Surface {
     std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     QuadList quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
+    /// Per dominant vertex, or empty: how far the smooth surface that the normals of a face stand for lies
+    /// above it along that face's normal, of vertices inside faces that were cut into several patches.
+    std::vector<float> base_heights;
     int most_base_cells = 32;   ///< per side, that a bicubic patch may have for the sake of its base alone
     std::vector<uint32_t> mips; ///< one a patch (formulas/mips.h), or empty: the map itself everywhere
     BaseReserve base_reserve;   ///< for which other tolerances the patches would be the same
@@ -206,8 +209,9 @@ struct SurfaceContext {
 };
 
 /// Makes a surface from polygons. With a displacement every face becomes quads (one linear Catmull-Clark
-/// refinement of the whole mesh where a face is not a quad), and points at exactly equal positions are one
-/// point; without, n-gons and concave quads are cut into triangles. Corners that repeat the position of the
+/// refinement of the whole mesh where a face is not a convex quad; concave faces are cut into triangles
+/// first), and points at exactly equal positions are one point; without, n-gons and concave quads are cut
+/// into triangles. Corners that repeat the position of the
 /// corner before are dropped, so a quad with a collapsed edge counts as a triangle. Throws bad_input with
 /// mesh and face: missing uv, index out of range, no face with an area, a value that is not finite or
 /// absurdly large.

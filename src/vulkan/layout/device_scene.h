@@ -44,7 +44,8 @@ struct SurfaceData {
     uint first_override_word; ///< of override_bits
     uint map;                 ///< index into maps; kNone: not displaced
     uint first_control;       ///< of positions, in vertices: twelve per patch; kNone: bilinear patches
-    uint first_mip;        ///< of override_bits: one word per patch (mips.h); kNone: mip level 0 everywhere
+    uint first_height; ///< in numbers of positions, three per vertex: Surface::base_heights; kNone: all are 0
+    uint first_mip;    ///< of override_bits: one word per patch (mips.h); kNone: mip level 0 everywhere
     uint first_derivative; ///< of positions, in vertices: dP/du and dP/dv of each vertex; kNone: unit frames
     uint has_bilinear_uvs; ///< of polygons; else linear on each triangle
     uint first_tangent;    ///< of override_bits: one word per corner of each patch (frame.h); kNone: none

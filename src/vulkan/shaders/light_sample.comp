@@ -128,7 +128,8 @@ bool sample_light(const uint path_index, const HitData hit) {
     BsdfValue bsdf = evaluate_scattering(scattering, wi);
     // No other ray finds light from below the triangle.
     bool is_caught = is_catcher(hit, push.depth);
-    bool is_alone = push.last_depth == 0u || is_lifted || is_caught;
+    bool is_below = is_lifted && dot(drawn.light.direction, point.geometric_normal) <= 0.0;
+    bool is_alone = push.last_depth == 0u || is_below || is_caught;
     float weight = is_alone ? 1.0 : power_heuristic(drawn.light.pdf, bsdf.pdf);
     PathData path = paths[path_index];
     vec3 contribution = path.throughput * bsdf.value * drawn.light.weight * weight;
