@@ -9,7 +9,12 @@ from . import bake_operator, engine, panels, properties, statistics
 _MODULES = [properties, statistics, bake_operator, engine, panels]
 
 
+_registered = False
+
+
 def register():
+    global _registered
+    _registered = True
     for module in _MODULES:
         module.register()
     if not bpy.app.binary_path:  # as a Python module Blender never ends while classes are registered
@@ -17,6 +22,11 @@ def register():
 
 
 def unregister():
+    """Once: where Blender is a Python module, both the end of Python and Blender's own end call this."""
+    global _registered
     atexit.unregister(unregister)
+    if not _registered:
+        return
+    _registered = False
     for module in reversed(_MODULES):
         module.unregister()

@@ -98,6 +98,8 @@ class DisplacementReader:
         if isinstance(scale, Textured):
             value = values.combine(lambda v, s: (v - midlevel) * s, [value, scale], self._values.texels)
             midlevel, scale = 0.0, values.make_constant(1)
+        if isinstance(value, Textured) and value.tiles and not all(np.all(np.isfinite(t)) for t in value.tiles.values()):
+            raise NotExpressible("a computation whose texels are not finite")
         numbers = [midlevel, scale.number, *(value.rgb if isinstance(value, Constant) else value.factor)]
         if not np.all(np.abs(numbers) < LARGEST):  # NaN is not
             raise NotExpressible("a scale, midlevel or value that is not finite")

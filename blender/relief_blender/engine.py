@@ -4,7 +4,7 @@ import weakref
 
 import bpy
 
-from . import faults, passes, statistics
+from . import faults, passes, remedies, statistics
 from .camera_export import report_clipping
 from .motion_export import MotionExport
 from .properties import find_threads
@@ -137,7 +137,7 @@ class ReliefEngine(bpy.types.RenderEngine):
     def _finish(self, picture, depsgraph, name):
         self._show(picture, depsgraph, name, is_last=True)
         for warning in picture.warnings:
-            self._report.add("scene", "", warning)
+            self._report.add("scene", "", remedies.translate(warning))
         self._keep(depsgraph, picture.statistics)
         if name == list(self._views)[-1] or self._is_stopped():
             self._report.tell(lambda line: self.report({"WARNING"}, line))

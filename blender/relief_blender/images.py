@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
+import relief
 
 from .exr_header import is_plain_exr
 from .node_tree import NotExpressible
@@ -57,6 +58,57 @@ class MissingImage(NotExpressible):
     def tell(self, instead):
         """The line of a report. `instead`: what becomes of the thing."""
         return f"{self}: {instead} (File > External Data > Find Missing Files)"
+
+
+class DamagedImage(MissingImage):
+    """An image whose texels cannot be used."""
+
+    def tell(self, instead):
+        return f"{self}: {instead}"
+
+
+_faults = {}  # of files that Relief reads itself, by path, time and size: why it cannot, or ""
+
+
+def _find_fault(path):
+    """Why Relief cannot use the texels of a file, or ""."""
+    state = os.stat(path)
+    key = path, state.st_mtime_ns, state.st_size
+    if key not in _faults:
+        try:
+            _faults[key] = _describe_bad_texel(_load_colors(path))
+        except relief.Error as fault:
+            _faults[key] = fault.message
+    return _faults[key]
+
+
+def _load_colors(path):
+    """(height, width, channels) of a file as Relief reads it, without alpha."""
+    picture = relief.Picture.load(path)
+    return picture.array[..., [k for k, name in enumerate(picture.channels) if name != "A"]]
+
+
+def _describe_bad_texel(colors):
+    """Where the first texel is that is not finite, or ""."""
+    if np.isfinite(np.sum(colors, dtype=np.float64)):  # the usual case, fast
+        return ""
+    bad = ~np.all(np.isfinite(colors), -1)
+    if not bad.any():
+        return ""
+    row, column = np.unravel_index(np.argmax(bad), bad.shape)
+    kind = "NaN" if np.isnan(colors[row, column]).any() else "infinity"
+    return f"{np.count_nonzero(bad)} of its texels are not finite, the first is {kind} at column {column}, row {row} from the top"
+
+
+def check_file(image, path):
+    """Raises DamagedImage for a file of an image that Relief cannot use."""
+    numbers = [tile.number for tile in image.tiles] if "<UDIM>" in path else [None]
+    for number in numbers:
+        file = path if number is None else path.replace("<UDIM>", str(number))
+        fault = _find_fault(file) if os.path.isfile(file) else ""
+        if fault:
+            tile = "" if number is None else f", tile {number}"
+            raise DamagedImage(f'image "{image.name}"{tile} cannot be used: {fault}: {file}')
 
 
 class Pixels(NamedTuple):
@@ -157,6 +209,10 @@ def read_tiles(image, report, cache=None):
     tiles = {number: _decode(pixels, image.name, report) for number, pixels in fetched.items() if pixels is not None}
     if not tiles:
         raise MissingImage(f'image "{image.name}" has no pixels: {image.filepath or "no file"}')
+    for number, texels in tiles.items():
+        fault = _describe_bad_texel(texels[..., :3])
+        if fault:
+            raise DamagedImage(f'image "{image.name}"{"" if len(tiles) == 1 else f", tile {number}"} cannot be used: {fault}')
     missing = [str(number) for number in fetched if number not in tiles]
     if missing:
         report(f'tiles {" ".join(missing)} of image "{image.name}" are not on disk: save the image')

@@ -150,18 +150,30 @@ def link_light(light, light_object, names):
             light[key] = list(dict.fromkeys(linked))
 
 
+def is_portal(light):
+    """Of an area light with Cycles' Portal, which marks a window."""
+    return light.type == "AREA" and bool(getattr(getattr(light, "cycles", None), "is_portal", False))
+
+
 def export_light(light_object, matrix_world, report):
     """The relief.Light of a light, without its links; None where it cannot be rendered."""
     name = light_object.original.name_full
 
     def tell(text):
         report.add("light", name, text)
+    if is_portal(light_object.data):
+        tell("a portal gives no light of its own: it is left out, and guides no rays to the world")
+        return None
     result = make_light(light_object.data, matrix_world, tell)
     fault = find_fault(result)
     if fault:
         tell(f"{fault}: it is left out")
         return None
     result["visible_to_camera"] = bool(light_object.original.visible_camera)
+    hidden = [name for name in ("diffuse", "glossy", "transmission")
+              if not getattr(light_object.original, f"visible_{name}", True)]
+    if hidden:
+        tell(f"ray visibility ({', '.join(hidden)}) is left out: it lights all")
     if not light_object.data.use_shadow:
         tell("a light without shadows has shadows")
     if light_object.original.light_linking.blocker_collection is not None:

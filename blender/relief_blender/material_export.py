@@ -8,7 +8,7 @@ import relief
 from . import faults
 from .displacement_export import DisplacementReader
 from .kept_parts import KeptMaterial
-from .node_tree import NotExpressible, Wire, find_output
+from .node_tree import NotExpressible, Wire, find_output, follow
 from .node_values import NodeValues
 from .shaders import FALLBACK, Shaders
 from .textures import TextureWriter
@@ -28,6 +28,7 @@ class ExportedMaterial(NamedTuple):
     is_tangent: bool = False
     is_world_height: bool = False
     further: tuple = ()
+    is_volume_only: bool = False
 
 
 class MaterialExport:
@@ -94,6 +95,9 @@ class MaterialExport:
             self._report.add("material", name, text)
         node_values = NodeValues(report, Texels(report, self._kept.tiles if self._kept else None))
         keys, displacement = self._read(material, node_values, report)
+        if keys is None:
+            self._scene.materials[name] = relief.Material()
+            return ExportedMaterial(name, is_volume_only=True)
         base = displacement.value.place if displacement else self._choose_place(keys)
         base = Place(base.uv_map, base.scale, base.offset)
         if not displacement:
@@ -108,7 +112,7 @@ class MaterialExport:
                                                  further), node_values.texels)
 
     def _read(self, material, node_values, report):
-        """(keys of the surface, displacement or None)."""
+        """(keys of the surface, displacement or None). Without keys there is a volume and no surface: nothing is seen of it."""
         tree = material.node_tree
         is_by_nodes = tree is not None and (material.use_nodes or not hasattr(material, "use_nodes"))
         if not is_by_nodes:
@@ -118,13 +122,15 @@ class MaterialExport:
         if output is None:
             report("it has no output node: it is grey")
             return dict(FALLBACK), None
+        if output.inputs["Volume"].is_linked:
+            report("its volume is not taken over")
+            if is_unlinked(output.inputs["Surface"]) and not is_unlinked(output.inputs["Volume"]):
+                return None, None
         try:
             keys = Shaders(node_values, report).surface(Wire(output.inputs["Surface"]))
         except NotExpressible as fault:
             report(f"{fault}: it is grey")
             keys = dict(FALLBACK)
-        if output.inputs["Volume"].is_linked:
-            report("its volume is not taken over")
         return keys, DisplacementReader(material, node_values, report).read(output)
 
     @staticmethod
@@ -151,6 +157,14 @@ class MaterialExport:
             else:
                 result["geometry_opacity" if key == "opacity" else key] = writer.number(value, label)
         return result
+
+
+def is_unlinked(socket):
+    """Whether no node feeds a socket, past reroutes, muted nodes and groups."""
+    try:
+        return follow(Wire(socket)).node is None
+    except NotExpressible:
+        return True
 
 
 def find_free_name(stem):

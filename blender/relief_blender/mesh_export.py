@@ -192,6 +192,10 @@ class MeshExport:
 
     def _add(self, evaluated, arrays, material, **keys):
         """Adds a mesh to the scene. A list of its MeshPart, empty where it cannot be rendered."""
+        if material.is_volume_only:
+            self._report.add("object", evaluated.original.name_full,
+                             f'material "{material.material}" has a volume and no surface: its faces are left out')
+            return []
         repaired = mesh_repair.repair(arrays, lambda text: self._report.add("object", evaluated.original.name_full, text))
         if repaired is None:
             return []

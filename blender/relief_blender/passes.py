@@ -31,15 +31,8 @@ PASSES = [
 ]
 MATTES = [("use_pass_cryptomatte_object", "CryptoObject"), ("use_pass_cryptomatte_material", "CryptoMaterial")]
 MATTE_RANKS = 3  # pictures of two ranks each
-NOT_MADE = {"use_pass_mist": "Mist", "use_pass_vector": "Vector", "use_pass_shadow": "Shadow",
-            "use_pass_object_index": "Object Index", "use_pass_material_index": "Material Index",
-            "use_pass_ambient_occlusion": "Ambient Occlusion", "use_pass_cryptomatte_asset": "Cryptomatte Asset",
-            "use_pass_diffuse_direct": "Diffuse Direct", "use_pass_diffuse_indirect": "Diffuse Indirect",
-            "use_pass_glossy_direct": "Glossy Direct", "use_pass_glossy_indirect": "Glossy Indirect",
-            "use_pass_glossy_color": "Glossy Color", "use_pass_transmission_direct": "Transmission Direct",
-            "use_pass_transmission_indirect": "Transmission Indirect",
-            "use_pass_transmission_color": "Transmission Color", "use_pass_subsurface_direct": "Subsurface Direct",
-            "use_pass_subsurface_indirect": "Subsurface Indirect", "use_pass_subsurface_color": "Subsurface Color"}
+# Of these switches the label of Blender alone would not name the pass.
+LABELS = {"denoising_store_passes": "Denoising Data", "pass_debug_sample_count": "Debug Sample Count"}
 
 
 def wanted_passes(view_layer):
@@ -65,10 +58,27 @@ def find_layers(view_layer):
     return list(dict.fromkeys([p.layer for p in wanted_passes(view_layer)] + wanted_mattes(view_layer)))
 
 
+def find_switches(owner):
+    """{identifier: label} of the passes that are switched on in a view layer, or in the settings of Cycles for it."""
+    if owner is None:
+        return {}
+    return {p.identifier: LABELS.get(p.identifier, p.name) for p in owner.bl_rna.properties
+            if (p.identifier.startswith(("use_pass_", "pass_debug_")) or p.identifier == "denoising_store_passes")
+            and p.type == "BOOLEAN" and not p.is_array and getattr(owner, p.identifier)}
+
+
 def report_missing(view_layer, report):
-    for switch, name in NOT_MADE.items():
-        if getattr(view_layer, switch, False):
-            report.add("scene", "", f"the pass {name} is not made")
+    """Names what is asked for and not made."""
+    made = {p.switch for p in PASSES} | {switch for switch, _ in MATTES}
+    made |= {"use_pass_combined", "use_pass_cryptomatte_accurate"}
+    wanted = {**find_switches(view_layer), **find_switches(getattr(view_layer, "cycles", None))}
+    for switch, label in wanted.items():
+        if switch not in made:
+            report.add("scene", "", f"the pass {label} is not made")
+    for aov in getattr(view_layer, "aovs", ()):
+        report.add("scene", "", f'the pass of the shader AOV "{aov.name}" is not made')
+    for group in getattr(view_layer, "lightgroups", ()):
+        report.add("scene", "", f'the pass of the light group "{group.name}" is not made')
 
 
 def make_ways(view):

@@ -73,6 +73,10 @@ class SceneExport:
         render = self._depsgraph.scene.render
         if render.use_freestyle:
             self._report.add("scene", "", "Freestyle is left out")
+        exposure = getattr(getattr(self._depsgraph.scene, "cycles", None), "film_exposure", 1.0)
+        if exposure != 1:
+            self._report.add("scene", "", f"Film > Exposure {exposure:g} of Cycles is left out: Color Management > Exposure "
+                             f"{np.log2(max(exposure, 1e-10)):.3g} does the same to what is shown")
 
     def _add_light(self, instance):
         light = export_light(instance.object, instance.matrix_world, self._report)

@@ -66,6 +66,9 @@ class TextureWriter:
 
     def _arrays(self, value, is_number, most=np.inf):
         tiles = self._texels.tiles(value)
+        if not all(np.all(np.isfinite(t)) for t in tiles.values()):
+            self._report("texels that are not finite after a computation are 0")
+            tiles = {n: np.nan_to_num(t, nan=0.0, posinf=0.0, neginf=0.0) for n, t in tiles.items()}
         tiles = {n: np.ascontiguousarray(np.clip(t[..., :1] if is_number else t, -np.inf, most), np.float32)
                  for n, t in tiles.items()}
         return tiles if list(tiles) != [1001] else tiles[1001]

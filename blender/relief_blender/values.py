@@ -83,8 +83,11 @@ class Texels:
 
     def check(self, image):
         """Raises images.MissingImage where there is nothing to read."""
-        if images.find_file(image) is None:
+        file = images.find_file(image)
+        if file is None:
             self.read(image)
+        else:
+            images.check_file(image, file)
 
     def tiles(self, value):
         """{udim: (height, width, 3) float32}, factor included."""

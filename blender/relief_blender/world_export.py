@@ -162,6 +162,8 @@ class WorldReader:
             if turn is None:
                 return relief.Environment(file=turn_picture(self._read(node), matrix, is_mirror_ball), **keys)
             file = images.find_file(node.image) if node.image is not None else None
+            if file is not None:
+                images.check_file(node.image, file)
             picture = file or np.ascontiguousarray(self._read(node))
             return relief.Environment(file=picture, rotate_degrees=TURN_DEGREES - turn, **keys)
         except images.MissingImage as fault:
@@ -180,6 +182,14 @@ def find_world(depsgraph):
     return depsgraph.view_layer.world_override or depsgraph.scene.world
 
 
+def report_visibility(world, tell):
+    """Names the rays that do not see the world in Cycles."""
+    visibility = getattr(world, "cycles_visibility", None)
+    hidden = [kind for kind in ("camera", "diffuse", "glossy", "transmission") if not getattr(visibility, kind, True)]
+    if hidden:
+        tell(f"ray visibility ({', '.join(hidden)}) is left out: all rays see it")
+
+
 def export_world(depsgraph, report):
     """The Environment at the depsgraph's time: the original world stays behind."""
     world = find_world(depsgraph)
@@ -188,6 +198,7 @@ def export_world(depsgraph, report):
 
     def tell(text):
         report.add("world", name, text)
+    report_visibility(world, tell)
     environment = WorldReader(tell).read(world)
     strength = environment.get("strength", 1.0)
     if not np.all(np.abs([*environment["color"], strength]) < LARGEST):  # NaN is not

@@ -38,6 +38,14 @@ class Addon(unittest.TestCase):
         script = f"import sys; sys.path.insert(0, {str(HERE.parent)!r}); import bpy, relief_blender; relief_blender.register()"
         self.assertEqual(subprocess.run([sys.executable, "-c", script], capture_output=True, timeout=120).returncode, 0)
 
+    def test_a_script_that_enables_it_ends_without_a_word(self):
+        """Blender itself unregisters what is enabled, after Python has."""
+        script = (f"import sys; sys.path.insert(0, {str(HERE.parent)!r}); import bpy, addon_utils; "
+                  "addon_utils.enable('relief_blender', default_set=True)")
+        answer = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+        self.assertEqual(answer.returncode, 0)
+        self.assertNotIn("Traceback", answer.stdout + answer.stderr)
+
     def test_what_is_no_wheel_of_a_platform_is_refused(self):
         answer = self.pack("relief-0.7.2-py3-none-any.whl")
         self.assertNotEqual(answer.returncode, 0)

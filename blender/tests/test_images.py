@@ -83,6 +83,57 @@ class Images(BlenderTest):
             self.assertIn('material "material": displacement: image "gone', self.report()[0])
             self.assertIn("nothing is displaced by it", self.report()[0])
 
+    def save(self, texels, name="map.exr", colors="Non-Color"):
+        image = make_image("made", texels)
+        image.filepath_raw, image.file_format = str(self.folder / name), "OPEN_EXR"
+        image.save()
+        loaded = bpy.data.images.load(image.filepath_raw)
+        loaded.colorspace_settings.name = colors
+        loaded.name = "loaded"
+        return loaded
+
+    def test_texels_that_are_not_finite_leave_their_picture_out_and_it_is_named(self):
+        ob = make_grid(2)
+        material = make_material(ob)
+        plain = self.render("RELIEF", "plain", samples=2)
+        texels = make_hook(64)
+        texels[5, 7, 1] = np.nan
+        for is_file in (True, False):
+            texture = displace(material, self.save(texels) if is_file else make_image("loaded", texels))
+            texture.image.name = "loaded"
+            ours = self.render("RELIEF", "bad", samples=2)
+            self.assertEqual(np.mean(ours.mask != plain.mask), 0)
+            self.assertEqual(len(self.report()), 1, self.report())
+            line = self.report()[0]
+            for part in ('material "material": displacement: image "loaded" cannot be used: 1 of its texels',
+                         "NaN at column 7, row 5 from the top", "nothing is displaced by it"):
+                self.assertIn(part, line)
+            bpy.data.images.remove(texture.image)
+
+    def test_a_truncated_file_is_left_out_and_named(self):
+        texture, *_ = self.make_glow()
+        texture.image = self.save(make_hook(128))
+        file = self.folder / "map.exr"
+        file.write_bytes(file.read_bytes()[:9000])
+        texture.image.reload()
+        self.assertGreater(self.render("RELIEF", samples=1)["Combined"][..., :3].max(), 0)
+        self.assertEqual(len(self.report()), 1, self.report())
+        self.assertIn('image "loaded" cannot be used', self.report()[0])
+        self.assertIn("it is pink, as in Cycles", self.report()[0])
+
+    def test_an_environment_that_is_not_finite_is_pink_and_named(self):
+        tree = bpy.context.scene.world.node_tree
+        background = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBackground")
+        texture = tree.nodes.new("ShaderNodeTexEnvironment")
+        tree.links.new(texture.outputs["Color"], background.inputs["Color"])
+        texels = np.ones((8, 16, 3), np.float32)
+        texels[0, 0, 0] = np.inf
+        texture.image = self.save(texels)
+        make_material(make_grid(1))
+        self.render("RELIEF", samples=1)
+        self.assertEqual(len(self.report()), 1, self.report())
+        self.assertIn("infinity at column 0, row 0 from the top", self.report()[0])
+
     def test_a_missing_normal_map_is_none_and_named(self):
         material = make_material(make_grid(1))
         tree = material.node_tree

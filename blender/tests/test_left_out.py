@@ -9,6 +9,7 @@ import numpy as np
 import relief
 from relief_blender import engine
 from test_geometry import make_cube, set_creases
+from relief_blender.remedies import translate
 from relief_blender.report import Report
 from relief_blender.scene_export import SceneExport
 
@@ -251,6 +252,109 @@ class Lights(BlenderTest):
                 self.render("RELIEF", samples=1)
                 self.assertIn(text, " ".join(self.report()))
             bpy.data.objects.remove(light)
+
+
+class Volumes(BlenderTest):
+    def add_fog(self):
+        """A box around all that has a volume alone, as fog is made."""
+        box = make_cube()
+        box.name, box.scale = "fog", (20, 20, 20)
+        material = make_material(box)
+        tree = material.node_tree
+        tree.nodes.clear()
+        output, scatter = tree.nodes.new("ShaderNodeOutputMaterial"), tree.nodes.new("ShaderNodeVolumeScatter")
+        scatter.inputs["Density"].default_value = 0.0
+        tree.links.new(scatter.outputs[0], output.inputs["Volume"])
+        return material, output
+
+    def test_a_fog_box_is_left_out_and_named(self):
+        make_material(make_grid(2))
+        material, output = self.add_fog()
+        self.compare_brightness()
+        line = f'object "fog": material "{material.name}" has a volume and no surface: its faces are left out'
+        self.assertIn(line, self.report())
+        clear = self.render("RELIEF", samples=2).brightness
+        diffuse = material.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
+        material.node_tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+        self.assertLess(self.render("RELIEF", samples=2).brightness, 0.5 * clear)
+        self.assertNotIn(line, self.report())
+
+    def test_a_material_without_anything_stays_black(self):
+        material = make_material(make_grid(2), Base_Color=(1, 1, 1))
+        plain = self.render("RELIEF", samples=2)
+        material.node_tree.nodes.clear()
+        material.node_tree.nodes.new("ShaderNodeOutputMaterial")
+        ours = self.render("RELIEF", samples=2)
+        self.assertEqual(np.mean(ours.mask != plain.mask), 0)
+        self.assertLess(ours["Combined"][..., :3][ours.mask].mean(), 0.01)
+
+
+class Named(BlenderTest):
+    """What would be another picture without a word."""
+
+    def setUp(self):
+        super().setUp()
+        make_material(make_grid(2))
+
+    def check(self, *lines):
+        self.render("RELIEF", samples=1)
+        self.assertEqual(self.report(), list(lines))
+
+    def test_a_portal_gives_no_light(self):
+        light = add_light("AREA", (0, 0, 3), energy=300.0)
+        light.data.cycles.is_portal = True
+        self.compare_brightness()
+        self.assertEqual(self.report(), [
+            f'light "{light.name}": a portal gives no light of its own: it is left out, and guides no rays to the world'])
+
+    def test_ray_visibility_of_lights_and_worlds(self):
+        light = add_light("POINT")
+        light.visible_diffuse = light.visible_glossy = False
+        bpy.context.scene.world.cycles_visibility.camera = False
+        bpy.context.scene.world.cycles_visibility.diffuse = False
+        self.check(f'light "{light.name}": ray visibility (diffuse, glossy) is left out: it lights all',
+                   'world "world": ray visibility (camera, diffuse) is left out: all rays see it')
+
+    def test_the_exposure_of_the_film(self):
+        bpy.context.scene.cycles.film_exposure = 4
+        self.check("scene: Film > Exposure 4 of Cycles is left out: Color Management > Exposure 2 does the same to what is shown")
+
+    def test_passes_that_are_not_made(self):
+        layer = bpy.context.view_layer
+        layer.use_pass_mist = layer.use_pass_diffuse_direct = layer.cycles.denoising_store_passes = True
+        layer.cycles.use_pass_shadow_catcher = layer.cycles.use_pass_volume_direct = True
+        layer.aovs.add().name = "mask"
+        layer.lightgroups.add(name="key")
+        self.render("RELIEF", samples=1)
+        lines = self.report()
+        for name in ("the pass Mist", "the pass Diffuse Direct", "the pass Denoising Data", "the pass Shadow Catcher",
+                     "the pass Volume Direct", 'the pass of the shader AOV "mask"', 'the pass of the light group "key"'):
+            self.assertIn(f"scene: {name} is not made", lines)
+        self.assertEqual(len(lines), 7, lines)
+
+
+class Remedies(BlenderTest):
+    def test_warnings_name_what_blender_has(self):
+        for given, wanted in (
+                ("x; write displacement.axes = t,b,n, as presets blender-brush, genvdm, 3dcoat",
+                 "x; put Separate Color and Combine Color between the image and the displacement node: Red from Red, "
+                 "Green from Blue, Blue from Green"),
+                ("write axes = -b,t,n", "put Separate Color and Combine Color between the image and the displacement node: "
+                 "Red from Green, Green from Blue, Blue from minus Red"),
+                ("y; write displacement.space = object, or inspect the map",
+                 "y; set Space of the node Vector Displacement to Object Space"),
+                ("or write displacement.wrap = repeat", "or set Extension of the node Image Texture to Repeat"),
+                ("mesh 'a' is fine", "mesh 'a' is fine")):
+            self.assertEqual(translate(given), wanted)
+
+    def test_a_sculpted_brush_in_another_order_is_told_in_words_of_blender(self):
+        with mock.patch.object(engine.ReliefEngine, "_show"):
+            ob = make_grid(2)
+            make_material(ob)
+            picture = mock.Mock(warnings=["write displacement.axes = t,b,n"], statistics={})
+            own = mock.Mock(_report=Report(), _views={"": None})
+            engine.ReliefEngine._finish(own, picture, mock.Mock(), "")
+            self.assertIn("Separate Color", own._report.lines[0])
 
 
 if __name__ == "__main__":
