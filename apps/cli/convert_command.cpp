@@ -155,8 +155,15 @@ int convert_map_file(const ConvertOptions& options) {
     return kExitDone;
 }
 
+/// What render warns of and shows in the written surface as well.
+Scene add_edge_warnings(Scene scene) {
+    for (std::string& warning : find_edge_warnings(scene)) scene.warnings.push_back(std::move(warning));
+    return scene;
+}
+
 Scene load_surface(const ConvertOptions& options) {
-    if (get_kind(options.input) == FileKind::scene) return load_scene(options.input, make_mesh_reader());
+    if (get_kind(options.input) == FileKind::scene)
+        return add_edge_warnings(load_scene(options.input, make_mesh_reader()));
     MeshSceneOptions scene;
     scene.reader = make_mesh_reader();
     scene.displacement_map = options.displacement_map;
@@ -164,7 +171,7 @@ Scene load_surface(const ConvertOptions& options) {
     scene.subdivision = options.subdivision, scene.weld = options.weld;
     // Without a view no level can be chosen by it.
     if (options.subdivision) scene.subdivision_level = options.subdivision_level.value_or(kUsualSubdivision);
-    return load_mesh_scene(options.input, scene);
+    return add_edge_warnings(load_mesh_scene(options.input, scene));
 }
 
 int convert_surface(const ConvertOptions& options) {

@@ -60,6 +60,10 @@ Inspection inspect_scene(const Scene& scene, const RenderSettings& settings,
 /// uv range.
 Inspection inspect_mesh(const Mesh& mesh, const Displacement* displacement = nullptr);
 
+/// Warnings about open edges of the displaced and subdivided meshes of a scene that nearly lie on each other
+/// and are not joined (Mesh::weld). render() warns of them by itself. Indices of objects must be valid.
+std::vector<std::string> find_edge_warnings(const Scene& scene);
+
 /// Whether the convention of a Displacement (all but its tiles) was stated by the user or consists of
 /// defaults.
 enum class MapMeaning { declared, unknown };

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "relief/inspect.h"
 #include "scene/face_uvs.h"
 #include "scene/tile_use.h"
 #include "scene/uv_sets.h"
@@ -101,14 +102,27 @@ void warn_of_darkness(const Scene& scene, std::vector<std::string>& warnings) {
 
 } // namespace
 
+std::vector<std::string> find_edge_warnings(const Scene& scene) {
+    std::vector<std::string> warnings;
+    std::set<uint32_t> seen;
+    for (const Object& object : scene.objects) {
+        const Mesh& mesh = scene.meshes[object.mesh];
+        const bool is_joined =
+            object.displacement != kNoIndex || mesh.subdivision.scheme != SubdivisionScheme::none;
+        if (is_joined && seen.insert(object.mesh).second) warn_of_near_edges(mesh, warnings);
+    }
+    return warnings;
+}
+
 std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSettings& image) {
     std::vector<std::string> warnings;
     if (image.noise > 0 && image.spp <= ImageSettings::kLeastNoiseSamples)
         warnings.push_back(fmt::format("image.noise is judged after {} samples, and pixels get {} at most",
                                        ImageSettings::kLeastNoiseSamples, image.spp));
     warn_of_darkness(scene, warnings);
+    for (std::string& warning : find_edge_warnings(scene)) warnings.push_back(std::move(warning));
     std::set<std::pair<uint32_t, uint32_t>> pairs;
-    std::set<uint32_t> meshes, read_meshes, joined_meshes;
+    std::set<uint32_t> meshes, read_meshes;
     std::set<std::pair<uint32_t, int>> read_sets;
     std::vector<std::vector<int>> uv_sets; // of materials
     for (const Material& material : scene.materials) uv_sets.push_back(list_uv_sets(material));
@@ -126,11 +140,8 @@ std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSett
                         uv_sets[object.material].end() &&
                     read_sets.insert({object.mesh, set.number}).second)
                     warn_of_faces_without_set(scene.meshes[object.mesh], set, warnings);
-        const Mesh& mesh = scene.meshes[object.mesh];
-        const bool is_joined =
-            object.displacement != kNoIndex || mesh.subdivision.scheme != SubdivisionScheme::none;
-        if (is_joined && joined_meshes.insert(object.mesh).second) warn_of_near_edges(mesh, warnings);
         if (object.displacement == kNoIndex) continue;
+        const Mesh& mesh = scene.meshes[object.mesh];
         if (pairs.insert({object.mesh, object.displacement}).second)
             for (std::string& warning : find_tile_warnings(mesh, scene.displacements[object.displacement]))
                 warnings.push_back(std::move(warning));

@@ -58,7 +58,7 @@ TEST_F(Weld, render_warns_with_the_option_or_the_key_and_stops_when_strict) {
         return arguments;
     }());
     EXPECT_EQ(strict.exit_code, 6) << strict.errors;
-    EXPECT_TRUE(contains(strict.errors, "--weld 1.5e-05 joins them, --weld 0 says")) << strict.errors;
+    EXPECT_TRUE(contains(strict.errors, "--weld 1.5e-05 joins them, --weld 0 keeps them apart")) << strict.errors;
     for (const std::string weld : {"1.5e-05", "0"}) {
         std::vector<std::string> arguments = with_map("render", small);
         arguments.insert(arguments.end(), {"--strict", "--weld", weld});
@@ -83,6 +83,9 @@ TEST_F(Weld, convert_writes_the_joined_mesh) {
               0);
     EXPECT_TRUE(find_fact(run({"inspect", "bumpy.obj"}).output, "vertices") == "15");
     EXPECT_EQ(run({"convert", "bump.exr", "--weld", "1", "-o", "o.exr"}).exit_code, 2);
+    const CommandResult apart = run(with_map("convert", {"--level", "1", "-o", "apart.obj"}));
+    EXPECT_TRUE(contains(apart.errors, "warning: mesh 'pair': 2 open edges")) << apart.errors;
+    EXPECT_TRUE(contains(apart.errors, "--weld 1.5e-05")) << apart.errors;
 }
 
 } // namespace

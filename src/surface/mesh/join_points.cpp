@@ -297,8 +297,8 @@ NearEdges find_near_edges(const Mesh& mesh) {
 std::string describe_near_edges(const NearEdges& edges) {
     return fmt::format(
         "{} open edges are within {:g} of each other but not joined, so that a displaced "
-        "surface has cracks there; mesh.weld = {:g} joins them, mesh.weld = 0 says that they are "
-        "meant",
+        "surface has cracks there; mesh.weld = {:g} joins them, mesh.weld = 0 keeps them apart "
+        "without this warning",
         edges.count, edges.weld, edges.weld);
 }
 
