@@ -58,7 +58,8 @@ TEST_F(Weld, render_warns_with_the_option_or_the_key_and_stops_when_strict) {
         return arguments;
     }());
     EXPECT_EQ(strict.exit_code, 6) << strict.errors;
-    EXPECT_TRUE(contains(strict.errors, "--weld 1.5e-05 joins them, --weld 0 keeps them apart")) << strict.errors;
+    EXPECT_TRUE(contains(strict.errors, "--weld 1.5e-05 joins them, --weld 0 keeps them apart"))
+        << strict.errors;
     for (const std::string weld : {"1.5e-05", "0"}) {
         std::vector<std::string> arguments = with_map("render", small);
         arguments.insert(arguments.end(), {"--strict", "--weld", weld});
