@@ -21,6 +21,7 @@
 #include "common/option_names.h"
 #include "common/progress.h"
 #include "common/values.h"
+#include "reading_notice.h"
 #include "relief/convert.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
@@ -132,7 +133,8 @@ int convert_map_file(const ConvertOptions& options) {
         refuse("--filter goes with --vdm MAP", options.input, "texels are converted one by one");
     MapOptions meaning = options.from;
     if (meaning.dequantize) meaning.filter = "cubic"; // dequantize asks for a smooth one
-    const Displacement from = load_map(options.input, meaning, warnings);
+    const Displacement from = read_with_notice(options.progress, options.input,
+                                               [&] { return load_map(options.input, meaning, warnings); });
     print_warnings(options, warnings);
     warnings.clear();
     std::optional<Mesh> mesh;
@@ -187,7 +189,9 @@ int convert_surface(const ConvertOptions& options) {
                    options.input, "a plain mesh is written as it is");
         WorkProgress progress(options.progress);
         std::vector<std::string> warnings;
-        const Mesh mesh = load_mesh(options.input, {.reader = make_mesh_reader()}, warnings);
+        const Mesh mesh = read_with_notice(options.progress, options.input, [&] {
+            return load_mesh(options.input, {.reader = make_mesh_reader()}, warnings);
+        });
         progress.tell(kBeforeConversion);
         print_warnings(options, warnings, &progress);
         write_mesh(mesh, options.output, progress.part(kBeforeConversion, 1));
@@ -198,7 +202,8 @@ int convert_surface(const ConvertOptions& options) {
                      options.subdivision || options.weld))
         refuse("a scene file says itself what its meshes and maps are", options.input, "");
     WorkProgress progress(options.progress);
-    const Scene scene = load_surface(options);
+    const Scene scene =
+        read_with_notice(options.progress, options.input, [&] { return load_surface(options); });
     progress.tell(kBeforeConversion);
     keep_files(list_files(scene), options.output);
     print_warnings(options, scene.warnings, &progress);

@@ -22,6 +22,7 @@
 #include "common/progress.h"
 #include "common/report.h"
 #include "common/values.h"
+#include "reading_notice.h"
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
@@ -98,7 +99,8 @@ void write_check_picture(const Scene& scene, const RenderSettings& settings, con
 
 Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progress) {
     std::vector<std::string> warnings, mesh_warnings;
-    const Displacement map = load_map(options.file, options.scene.map, warnings);
+    const Displacement map = read_with_notice(
+        options.progress, options.file, [&] { return load_map(options.file, options.scene.map, warnings); });
     progress.tell(kRead);
     const MapMeaning meaning = options.map_only.empty() ? MapMeaning::unknown : MapMeaning::declared;
     std::optional<Mesh> mesh;
@@ -130,7 +132,9 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
 
 Inspection inspect_plain_mesh(const InspectOptions& options, WorkProgress& progress) {
     std::vector<std::string> warnings;
-    Mesh mesh = load_mesh(options.file, {.reader = make_mesh_reader()}, warnings);
+    Mesh mesh = read_with_notice(options.progress, options.file, [&] {
+        return load_mesh(options.file, {.reader = make_mesh_reader()}, warnings);
+    });
     progress.tell(kRead);
     Inspection inspection = inspect_read_mesh(mesh, warnings);
     progress.tell(get_picture_start(options));
@@ -158,7 +162,8 @@ Inspection inspect_as_scene(const Scene& scene, const InspectOptions& options, W
 
 /// Facts of the mesh, then those of the scene that a render would make of it, without duplicates.
 Inspection inspect_mesh_as_rendered(const InspectOptions& options, WorkProgress& progress) {
-    const Scene scene = load_mesh_scene(options.file, options.scene);
+    const Scene scene = read_with_notice(options.progress, options.file,
+                                         [&] { return load_mesh_scene(options.file, options.scene); });
     const Displacement* map = scene.displacements.empty() ? nullptr : &scene.displacements.front();
     Inspection inspection = inspect_mesh(scene.meshes.front(), map);
     progress.tell(kRead);
@@ -187,7 +192,8 @@ Inspection inspect_file(const InspectOptions& options) {
     case FileKind::scene:
         break;
     }
-    const Scene scene = load_scene(options.file, make_mesh_reader());
+    const Scene scene = read_with_notice(options.progress, options.file,
+                                         [&] { return load_scene(options.file, make_mesh_reader()); });
     refuse_empty_scene(scene, options.file);
     progress.tell(kRead);
     return inspect_as_scene(scene, options, progress);

@@ -24,6 +24,7 @@
 #include "finish_picture.h"
 #include "interrupt.h"
 #include "picture_settings.h"
+#include "reading_notice.h"
 #include "relief/error.h"
 #include "relief/io.h"
 #include "relief/render.h"
@@ -132,12 +133,21 @@ RenderOptions name_pictures(const RenderOptions& options, std::optional<int> fra
     return one;
 }
 
+template <class Load> Scene read_scene(const RenderOptions& options, const Load& load) {
+    return with_scene_hint(options, [&] { return read_with_notice(options.progress, options.input, load); });
+}
+
+Scene read_mesh_scene(const RenderOptions& options) {
+    return read_with_notice(options.progress, options.input,
+                            [&] { return load_mesh_scene(options.input, options.mesh); });
+}
+
 /// A picture of one frame, or of the file as it is where there is none. The shot is let go before a still one
 /// is rendered: it holds the text of the scene, and textures that a render would free.
 int render_frame(const RenderOptions& options, std::optional<Shot>& shot, std::optional<int> frame,
                  double start) {
     const RenderOptions one = name_pictures(options, frame);
-    Scene scene = with_scene_hint(options, [&] { return shot->load(frame.value_or(1)); });
+    Scene scene = read_scene(options, [&] { return shot->load(frame.value_or(1)); });
     const bool is_still = options.pixel || !options.edits.empty() || options.aim.turntable > 0 ||
                           !is_moving(*shot, scene.camera);
     if (is_still) {
@@ -161,7 +171,7 @@ int render_file(const RenderOptions& options, double start) {
         return render_frame(options, shot, frames.front(), start);
     check_series(options);
     const auto load = [&](int frame) {
-        Scene scene = with_scene_hint(options, [&] { return shot->load(frame); });
+        Scene scene = read_scene(options, [&] { return shot->load(frame); });
         if (is_moving(*shot, scene.camera)) check_motion(options);
         const RenderSettings settings = prepare_picture(options, scene);
         return std::pair(std::move(scene), settings);
@@ -173,7 +183,7 @@ int render_file(const RenderOptions& options, double start) {
 int render_mesh(const RenderOptions& options, double start) {
     const bool is_one = options.aim.turntable == 0 && options.edits.empty();
     const RenderOptions one = is_one ? name_pictures(options, std::nullopt) : options;
-    return render_scene(one, load_mesh_scene(options.input, options.mesh), {}, start);
+    return render_scene(one, read_mesh_scene(options), {}, start);
 }
 
 } // namespace

@@ -24,7 +24,8 @@ class WorkProgressOfCommands : public CommandTest {
 
     /// Percents grow from below to 100, with times, and nothing of a render.
     void expect_progress(const std::vector<std::string>& arguments, size_t least_lines) {
-        const std::vector<json> lines = list_lines(arguments);
+        std::vector<json> lines = list_lines(arguments);
+        std::erase_if(lines, [](const json& line) { return line["percent"].is_null(); }); // a slow reader
         ASSERT_GE(lines.size(), least_lines) << arguments[0];
         double before = 0;
         for (const json& line : lines) {

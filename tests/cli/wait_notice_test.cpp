@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reading_notice.h"
 #include "wait_notice.h"
 
 namespace relief::cli {
@@ -41,6 +42,19 @@ TEST(WaitNotice, is_printed_until_its_stop) {
     testing::internal::CaptureStderr();
     printer.print({.fraction = -1, .elapsed_s = 9}, "other"); // nobody else prints
     EXPECT_EQ(before + testing::internal::GetCapturedStderr(), "other  0:09 elapsed\n");
+}
+
+TEST(WaitNotice, tells_which_file_is_being_read) {
+    testing::internal::CaptureStderr();
+    const std::string line = read_with_notice(
+        make_plain(), "large.png", [] { return await_line(); }, kFirst);
+    EXPECT_EQ(line, "reading large.png  0:00 elapsed\n");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(read_with_notice(
+                  make_plain(), "small.png", [] { return 5; }, kLong),
+              5);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(WaitNotice, waits_while_something_else_is_printed) {

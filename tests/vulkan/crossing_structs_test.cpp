@@ -28,7 +28,7 @@ namespace {
 
 static_assert(sizeof(scalar::InstanceData) == 33 * 4);
 static_assert(sizeof(scalar::InstanceData) * 1000000 <= 1 << 27, "one buffer holds a million instances");
-static_assert(sizeof(scalar::SurfaceData) == 19 * 4);
+static_assert(sizeof(scalar::SurfaceData) == 20 * 4);
 static_assert(sizeof(scalar::MapData) == 19 * 4);
 static_assert(sizeof(scalar::TextureData) == 5 * 4);
 static_assert(sizeof(scalar::MaterialData) == 63 * 4);

@@ -55,7 +55,7 @@ struct AllStructs {
 #define FIELDS_SURFACE(s) \
     FIELD(s.first_vertex) FIELD(s.dominant_count) FIELD(s.first_uv) FIELD(s.first_frame) FIELD(s.first_dominant) \
     FIELD(s.first_vertex_tile) FIELD(s.first_quad) FIELD(s.first_quad_texel) FIELD(s.has_wide_quads) FIELD(s.first_override) FIELD(s.override_count) \
-    FIELD(s.first_override_word) FIELD(s.map) FIELD(s.first_control) FIELD(s.first_mip) \
+    FIELD(s.first_override_word) FIELD(s.map) FIELD(s.first_control) FIELD(s.first_height) FIELD(s.first_mip) \
     FIELD(s.first_derivative) FIELD(s.has_bilinear_uvs) FIELD(s.first_tangent) FIELD(s.first_uv_set)
 #define FIELDS_MAP(s) \
     FIELD3(s.row0) FIELD3(s.row1) FIELD3(s.row2) FIELD3(s.midlevel) FIELD(s.wrap) FIELD(s.flip_v) \
