@@ -15,7 +15,7 @@ namespace relief {
 namespace {
 
 /// What to export instead.
-enum class Instead { mesh, map, picture };
+enum class Instead { mesh, map, picture, scene };
 
 struct Format {
     std::string_view suffixes, what, way; ///< `way`: the menu path of the program that writes such files
@@ -28,7 +28,9 @@ constexpr std::string_view kMaya = "Maya: File > Export All, Files of type: OBJe
 constexpr std::string_view kZbrush = "ZBrush: Tool > Export, as .obj";
 constexpr std::string_view kHoudini = "Houdini: right-click the surface node > Save Geometry, as .obj";
 constexpr std::string_view kUsd =
-    "Blender: File > Import > Universal Scene Description, then File > Export > Wavefront (.obj); Houdini: "
+    "relief-usd FILE -o FOLDER/scene.json, of the Python module (pip install \"relief[usd]\"); or, as a mesh "
+    "alone, Blender: File > Import > Universal Scene Description, then File > Export > Wavefront (.obj); "
+    "Houdini: "
     "right-click the surface node > Save Geometry, as .obj; Maya: File > Export All, OBJexport";
 constexpr std::string_view kAlembic =
     "Blender: File > Import > Alembic (.abc), then File > Export > Wavefront (.obj); Houdini: right-click "
@@ -42,12 +44,16 @@ constexpr std::string_view k3dsMax = "3ds Max: File > Export > Export, Save as t
 constexpr std::string_view kPhotoshop =
     "Photoshop: Image > Mode > 32 Bits/Channel, then File > Save As > OpenEXR or TIFF";
 constexpr std::string_view kGimp = "GIMP: File > Export As, as .png, .tif or .exr";
+constexpr std::string_view kOiiotool = "OpenImageIO's command line: oiiotool FILE -o FILE.exr";
+constexpr std::string_view kKtx = "KTX-Software's command line: ktx extract FILE.ktx2 FILE.png (a .ktx file: "
+                                  "ktx2ktx2 FILE.ktx first)";
+constexpr std::string_view kRaw = "darktable or RawTherapee: export it as .exr or .tif";
 constexpr std::string_view kPtex = "Ptex holds a picture a face and Relief reads pictures over uvs: bake it "
                                    "to a mesh with uvs (Mudbox: Maps > Extract Texture Maps > New Operation)";
 
 constexpr Format kFormats[] = {
     {".blend .blend1", "a Blender file", kBlender},
-    {".usd .usda .usdc .usdz", "a USD file", kUsd},
+    {".usd .usda .usdc .usdz", "a USD file", kUsd, Instead::scene},
     {".abc", "an Alembic file", kAlembic},
     {".stl", "an STL file, which has no uvs,", kMeshlab},
     {".ma .mb", "a Maya file", kMaya},
@@ -77,8 +83,23 @@ constexpr Format kFormats[] = {
     {".webp", "a WebP file", kGimp, Instead::picture},
     {".avif", "an AVIF file", kGimp, Instead::picture},
     {".heic", "a HEIC file", kGimp, Instead::picture},
-    {".jp2", "a JPEG 2000 file", kGimp, Instead::picture},
+    {".jp2 .jpx .jpf .j2k .j2c .jph", "a JPEG 2000 file", kGimp, Instead::picture},
     {".dds", "a DDS file", kGimp, Instead::picture},
+    {".ktx .ktx2", "a KTX file", kKtx, Instead::picture},
+    {".basis", "a Basis Universal file", "its command line: basisu -unpack FILE.basis", Instead::picture},
+    {".dpx", "a DPX file", kOiiotool, Instead::picture},
+    {".cin", "a Cineon file", kOiiotool, Instead::picture},
+    {".jxl", "a JPEG XL file", kGimp, Instead::picture},
+    {".jxr .wdp .hdp", "a JPEG XR file", "its command line: JxrDecApp -i FILE -o FILE.tif", Instead::picture},
+    {".heif .heics .hif", "a HEIF file", kGimp, Instead::picture},
+    {".pfm .ppm .pgm .pbm .pnm .pam", "a Netpbm file", kOiiotool, Instead::picture},
+    {".sgi .rgb .rgba .bw", "an SGI file", kOiiotool, Instead::picture},
+    {".iff", "a Maya IFF file", kOiiotool, Instead::picture},
+    {".pic", "a Softimage file", kOiiotool, Instead::picture},
+    {".fits .fit", "a FITS file", kOiiotool, Instead::picture},
+    {".ico .cur", "an icon", kGimp, Instead::picture},
+    {".svg .svgz", "an SVG drawing", "Inkscape: File > Export, as .png", Instead::picture},
+    {".dng .cr2 .cr3 .nef .arw .orf .rw2 .raf", "a camera's raw file", kRaw, Instead::picture},
 };
 
 struct GltfExtension {
@@ -96,7 +117,8 @@ constexpr std::array<GltfExtension, 3> kGltfExtensions{{
 
 /// In the order of Instead.
 constexpr std::string_view kAlternatives[] = {
-    "export OBJ, PLY or glTF", "export EXR, TIFF or PNG over the mesh's uvs", "export EXR, TIFF or PNG"};
+    "export OBJ, PLY or glTF", "export EXR, TIFF or PNG over the mesh's uvs", "export EXR, TIFF or PNG",
+    "export OBJ, PLY or glTF, or write a scene file with relief-usd"};
 
 } // namespace
 

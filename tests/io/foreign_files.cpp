@@ -18,7 +18,7 @@ TEST_F(ForeignFiles, meshes_name_the_way_out_of_their_program) {
         {"a.USD", "Blender: File > Import > Universal Scene Description"},
         {"a.usda", "USD"},
         {"a.usdc", "USD"},
-        {"a.usdz", "USD"},
+        {"a.usdz", "relief-usd FILE -o FOLDER/scene.json"},
         {"a.abc", "Alembic"},
         {"a.stl", "no uvs"},
         {"a.ma", "Maya: File > Export All, Files of type: OBJexport"},

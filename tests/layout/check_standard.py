@@ -10,8 +10,8 @@ from sources import INCLUDE, finish, list_code
 # Names by their headers; a name of several is in each.
 DECLARED = {
     "algorithm": """adjacent_find all_of any_of clamp copy copy_backward copy_if copy_n count count_if equal fill fill_n find
-        find_if find_if_not is_sorted lower_bound max max_element min min_element minmax minmax_element mismatch next_permutation
-        none_of nth_element partition remove_if replace replace_if reverse shuffle sort stable_partition stable_sort
+        find_if find_if_not is_sorted lower_bound max max_element min min_element minmax minmax_element mismatch
+        next_permutation none_of nth_element partition remove_if replace replace_if reverse search shuffle sort stable_partition stable_sort
         swap_ranges transform unique upper_bound ranges""",
     "array": "array",
     "atomic": "atomic memory_order_acquire memory_order_relaxed memory_order_release memory_order_seq_cst",
@@ -26,9 +26,10 @@ DECLARED = {
     "complex": "complex conj norm polar",
     "concepts": "floating_point integral same_as",
     "condition_variable": "condition_variable",
+    "csetjmp": "jmp_buf longjmp",
     "csignal": "sig_atomic_t signal",
     "cstddef": "byte ptrdiff_t",
-    "cstdio": "clearerr fclose ferror fflush fgetc fopen fprintf fputs fread fseek ftell fwrite printf snprintf",
+    "cstdio": "clearerr fclose ferror fflush fgetc fopen fprintf fputs fread fseek ftell fwrite printf snprintf sscanf vsnprintf",
     "cstdlib": "abort abs aligned_alloc atoi exit free getenv malloc strtol strtoull",
     "cstring": "memcmp memcpy memset strcmp strerror strlen",
     "deque": "deque",

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <utility>
+
+#include <OpenEXR/ImfCompression.h>
 
 #include "relief/image.h"
 
@@ -156,6 +159,42 @@ std::string find_exr_color_tag(std::istream& stream) {
         stream.seekg(std::streamoff(attribute->bytes), std::ios::cur);
     }
     return {};
+}
+
+std::string find_unknown_exr_compression(std::istream& stream) {
+    // OpenEXR 3.4: ImfCompression.h; later ones by the numbers that their writers give them.
+    constexpr int kKnown = Imf::NUM_COMPRESSION_METHODS;
+    constexpr std::array<std::pair<int, const char*>, 4> kNames{
+        {{10, "HTJ2K"}, {11, "HTJ2K"}, {12, "JPEG 2000"}, {13, "Zstandard"}}};
+    const std::optional<uint32_t> flags = read_start(stream);
+    if (!flags) return {};
+    bool is_any = true;
+    while (is_any) {
+        is_any = false;
+        while (const std::optional<Attribute> attribute = read_attribute(stream)) {
+            is_any = true;
+            const std::streamoff start = stream.tellg();
+            const int value = attribute->type == "compression" ? stream.get() : 0;
+            if (value >= kKnown) {
+                const auto found = std::ranges::find(kNames, value, &std::pair<int, const char*>::first);
+                return found == kNames.end() ? "number " + std::to_string(value) : found->second;
+            }
+            stream.clear();
+            stream.seekg(start + std::streamoff(attribute->bytes));
+        }
+        if ((*flags & kMultipartFlag) == 0) break;
+    }
+    return {};
+}
+
+bool is_exr_cube(std::istream& stream) {
+    constexpr int kCube = 1;
+    if (!read_start(stream)) return false;
+    while (const std::optional<Attribute> attribute = read_attribute(stream)) {
+        if (attribute->type == "envmap") return stream.get() == kCube;
+        stream.seekg(std::streamoff(attribute->bytes), std::ios::cur);
+    }
+    return false;
 }
 
 } // namespace relief

@@ -15,6 +15,13 @@ namespace relief {
 /// when all fit or it is no EXR. `stream_bytes`: its whole length; the position moves.
 std::optional<std::string> find_missized_exr_attribute(std::istream& stream, uint64_t stream_bytes);
 
+/// The compression of an EXR stream that OpenEXR of this build does not know, in any of its parts: its name,
+/// or its number; empty: it knows all of them, or the stream is no EXR.
+std::string find_unknown_exr_compression(std::istream& stream);
+
+/// Whether the first part of an EXR stream says that its picture is the six faces of a cube.
+bool is_exr_cube(std::istream& stream);
+
 /// What the header of an EXR stream says of colours: "attribute chromaticities", kRenderedTag for a picture
 /// that Relief rendered; empty: nothing, or no EXR.
 std::string find_exr_color_tag(std::istream& stream);
