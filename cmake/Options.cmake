@@ -1,7 +1,7 @@
 # Options of the build and flags that every target of Relief has, and none of those that use the library.
 include(CMakeDependentOption)
 option(RELIEF_IO "Build file readers and writers" ON)
-option(RELIEF_PICTURE_MODULE "Build the module that reads what neither OpenEXR nor libpng reads (OpenImageIO)" ON)
+option(RELIEF_PICTURE_MODULE "Build the module that reads pictures that the library itself does not (OpenImageIO)" ON)
 option(RELIEF_PYTHON "Build the Python module" OFF)
 option(RELIEF_VULKAN "Build the Vulkan engine" ON)
 option(RELIEF_APPS "Build the programs; the relief command needs RELIEF_IO" ${PROJECT_IS_TOP_LEVEL})

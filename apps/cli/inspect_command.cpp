@@ -79,6 +79,37 @@ Inspection inspect_read_mesh(const Mesh& mesh, const std::vector<std::string>& w
     return inspection;
 }
 
+std::string describe_layer(const PicturePart::Layer& layer) {
+    std::string text = layer.name.empty() ? "channels" : fmt::format("layer '{}'", layer.name);
+    for (size_t k = 0; k < layer.channels.size(); ++k) {
+        text += fmt::format(" {}", layer.channels[k]);
+        if (k + 1 == layer.channels.size() || layer.types[k + 1] != layer.types[k])
+            text += fmt::format(" ({})", layer.types[k]);
+    }
+    return text;
+}
+
+/// What an EXR file holds, a fact per part.
+void add_parts(const std::string& file, Inspection& inspection) {
+    const std::vector<PicturePart> parts = list_picture_parts(file);
+    for (size_t k = 0; k < parts.size(); ++k) {
+        const PicturePart& part = parts[k];
+        std::string text = part.name.empty() ? std::string() : fmt::format("'{}': ", part.name);
+        text += fmt::format("{} x {} pixels", part.width, part.height);
+        if (part.x != part.full_x || part.y != part.full_y || part.width != part.full_width ||
+            part.height != part.full_height)
+            text += fmt::format(" at ({}, {}) of {} x {}", part.x - part.full_x, part.y - part.full_y,
+                                part.full_width, part.full_height);
+        if (part.is_deep) text += ", deep";
+        for (const PicturePart::Layer& layer : part.layers) text += "; " + describe_layer(layer);
+        inspection.facts.push_back({fmt::format("part.{}", k),
+                                    text,
+                                    {{"width", double(part.width), "texels"},
+                                     {"height", double(part.height), "texels"},
+                                     {"layers", double(part.layers.size()), "count"}}});
+    }
+}
+
 /// A quarter of the check picture.
 RenderSettings make_check_settings() {
     RenderSettings settings;
@@ -112,8 +143,10 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
     const Displacement meant = meaning == MapMeaning::declared ? map : guess_map_meaning(map, mesh_or_null);
     Inspection inspection =
         inspect_map(map, meaning, mesh_or_null, progress.part(kRead, get_picture_start(options)));
+    add_parts(split_picture_name(map.tiles.front().texture->file).file, inspection);
     if (mesh) append(inspect_read_mesh(*mesh, mesh_warnings, &meant), inspection);
-    if (const std::string pattern = find_tile_pattern(options.file); !pattern.empty())
+    const std::string file = split_picture_name(options.file).file;
+    if (const std::string pattern = find_tile_pattern(file); !pattern.empty())
         inspection.findings.push_back(
             {Severity::warning, "W-TILE",
              fmt::format("one tile of several, and the only one read; name them all as {}", pattern)});
@@ -168,6 +201,11 @@ Inspection inspect_mesh_as_rendered(const InspectOptions& options, WorkProgress&
     Inspection inspection = inspect_mesh(scene.meshes.front(), map);
     progress.tell(kRead);
     Inspection rendered = inspect_as_scene(scene, options, progress);
+    // The mesh's own findings say the same.
+    const std::vector<std::string> known = find_tile_warnings(scene);
+    std::erase_if(rendered.findings, [&](const Finding& finding) {
+        return std::find(known.begin(), known.end(), finding.text) != known.end();
+    });
     std::erase_if(rendered.facts, [&](const Fact& fact) {
         return std::any_of(inspection.facts.begin(), inspection.facts.end(),
                            [&](const Fact& own) { return own.name == fact.name; });

@@ -18,7 +18,7 @@ FileKind get_kind(const std::filesystem::path& file) {
 std::vector<std::string> list_files(const Scene& scene) {
     std::vector<std::string> files = {scene.source};
     const auto add = [&](const std::shared_ptr<const Texture>& texture) {
-        if (texture) files.push_back(texture->file);
+        if (texture) files.push_back(split_picture_name(texture->file).file);
     };
     for (const Mesh& mesh : scene.meshes) files.push_back(mesh.source);
     for (const Displacement& displacement : scene.displacements)
@@ -64,7 +64,8 @@ void keep_files(const std::vector<std::string>& files, const std::filesystem::pa
     for (const std::string& file : files) {
         std::error_code ignored; // names that are not files
         if (file.empty() || file == "-") continue;
-        if (find_place(file) == place || std::filesystem::equivalent(file, output, ignored))
+        const std::filesystem::path read = split_picture_name(file).file;
+        if (find_place(read) == place || std::filesystem::equivalent(read, output, ignored))
             refuse_output(output);
     }
 }

@@ -39,7 +39,7 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
             ->group(group);
     };
     options.reader = make_mesh_reader();
-    add("--vdm", "MAP", "displacement map; may hold <UDIM>",
+    add("--vdm", "MAP", "displacement map; may hold <UDIM>, and name a layer: FILE.exr:LAYER",
         [&options](const std::string& text) { options.displacement_map = text; });
     add("--subdivision", "NAME", "catmark: the limit surface of the mesh; bilinear, none (default)",
         [&options](const std::string& text) {

@@ -52,6 +52,9 @@ struct Texture {
     /// What in the file marks the values as colours ("sRGB chunk"), kRenderedTag: as a picture of Relief's
     /// own; empty: nothing.
     std::string colour_tag;
+    /// How the file was read where that is in doubt, as layers that were left out; and where it is not.
+    std::vector<std::string> warnings, notes;
+    bool is_cube_map = false; ///< six faces of a cube, and no picture of a sphere's surroundings
     /// The least stride for so many channels.
     static constexpr uint32_t choose_stride(size_t channel_count) {
         return channel_count == 1 || channel_count == 3 ? uint32_t(channel_count) : 4;

@@ -1,7 +1,7 @@
 // Reading and writing of files: scenes, meshes, maps and images. In library relief_io; the core does not need
-// it. relief_io reads plain EXR itself; PNG, JPEG, TIFF, HDR and other EXR are read by the module
-// relief_pictures beside the program, loaded when the first such image is opened; a build without that module
-// reads PNG by libpng.
+// it. relief_io reads EXR, HDR and most TIFF and JPEG itself; PNG and other kinds are read by the
+// module relief_pictures beside the program, loaded when the first such image is opened; a build without that
+// module reads PNG by libpng.
 #pragma once
 
 #include <cstdint>
@@ -204,8 +204,39 @@ void save_scene_copy(const Scene& scene, const std::filesystem::path& input, con
 /// fit.
 Image read_image(const std::filesystem::path& file);
 
-/// Reads texels as stored: no colour conversion, no flip. Throws as read_image.
+/// Reads texels as stored: no colour conversion; the orientation that a TIFF or JPEG file names is followed.
+/// `file` may name a layer or a part of an EXR file, as split_picture_name() reads it; otherwise the RGB
+/// channels of the first part are read, or its first layer. Layers that are left out then are in
+/// Texture::warnings. Throws as read_image, and Error{bad_input} with the names that there are.
 Texture read_texture(const std::filesystem::path& file);
+
+/// A picture by its file and, of EXR files, the layer and the part that are meant; empty: not named.
+struct PictureName {
+    std::string file, part, layer;
+};
+
+/// Splits "FILE.exr:LAYER" and "FILE.exr:PART:LAYER". A name without a colon after ".exr" is that of a file.
+PictureName split_picture_name(const std::string& name);
+
+/// The name that split_picture_name() takes apart.
+std::string join_picture_name(const PictureName& name);
+
+/// A part of a picture; files of other kinds than EXR have one without a name.
+struct PicturePart {
+    struct Layer {
+        std::string name;                  ///< empty: channels without a layer
+        std::vector<std::string> channels; ///< in the order in which a map reads them, without the layer
+        std::vector<std::string> types;    ///< of each: "half", "float" or "uint"
+    };
+    std::string name;
+    int x = 0, y = 0, width = 0, height = 0;                     ///< data window
+    int full_x = 0, full_y = 0, full_width = 0, full_height = 0; ///< display window
+    std::vector<Layer> layers;
+    bool is_deep = false;
+};
+
+/// The parts of an EXR file; none for files of other kinds. Throws as read_image.
+std::vector<PicturePart> list_picture_parts(const std::filesystem::path& file);
 
 /// Writes an image; the extension selects .exr (all channels, ZIP, float), .hdr (R, G, B) or .png (tone
 /// mapped, 8-bit sRGB). The file is replaced atomically: written beside its place, then renamed. Throws

@@ -187,10 +187,25 @@ std::vector<std::set<uint32_t>> list_meshes(const Scene& scene) {
     return meshes;
 }
 
+/// What readers noted of the pictures of a scene, each once.
+void add_reading_notes(const Scene& scene, std::vector<Finding>& findings) {
+    std::set<std::string> known;
+    const auto add = [&](const std::shared_ptr<const Texture>& texture) {
+        for (size_t k = 0; texture && k < texture->notes.size(); ++k)
+            if (known.insert(texture->notes[k]).second) add_note(findings, "I-READ", "{}", texture->notes[k]);
+    };
+    for (const Displacement& map : scene.displacements)
+        for (const MapTile& tile : map.tiles) add(tile.texture);
+    for (const Material& material : scene.materials)
+        visit_textures(material, [&](const char*, const auto& texture, MapFilter) { add(texture); });
+    if (scene.environment) add(scene.environment->texture);
+}
+
 } // namespace
 
 std::vector<Finding> find_doubtful_assumptions(const Scene& scene) {
     std::vector<Finding> findings;
+    add_reading_notes(scene, findings);
     const std::vector<std::set<uint32_t>> meshes = list_meshes(scene);
     for (size_t index = 0; index < meshes.size(); ++index) {
         const Displacement& map = scene.displacements[index];

@@ -197,6 +197,11 @@ Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* 
     steps.add(1);
     describe_files(map, reading.statistics, result.facts);
     describe_convention(map, meaning, reading.statistics, reading.convention, result.facts);
+    for (const MapTile& tile : map.tiles) {
+        for (const std::string& text : tile.texture->warnings)
+            add_warning(result.findings, "W-READ", "{}", text);
+        for (const std::string& text : tile.texture->notes) add_note(result.findings, "I-READ", "{}", text);
+    }
     find_map_mistakes(map, meaning, reading.statistics, result.findings);
     if (reading.mesh) find_misfits(map, reading.statistics, *reading.mesh, result.findings);
     note_convention(map, meaning, reading.convention, result.findings);

@@ -166,7 +166,7 @@ TEST_F(Inspect, a_mesh_with_its_map_has_the_findings_of_that_map) {
     EXPECT_FALSE(contains(inspect("object"), "W-MIRROR")) << inspect("object");
 }
 
-TEST_F(Inspect, findings_of_one_code_are_all_told) {
+TEST_F(Inspect, findings_of_a_mesh_and_its_scene_are_all_told_once) {
     std::filesystem::copy_file(folder_ / "bump.exr", folder_ / "tiles.1001.exr");
     write("two.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
                      "vt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n"
@@ -174,8 +174,36 @@ TEST_F(Inspect, findings_of_one_code_are_all_told) {
                      "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\nt crease 2/1/0 1 4 3.5\n");
     const CommandResult result = run({"inspect", "two.obj", "--vdm", "tiles.<UDIM>.exr", "--subdivision",
                                       "catmark", "--subdivision-level", "1"});
-    EXPECT_TRUE(contains(result.output, "W-SCENE: displacement")) << result.output;
+    EXPECT_TRUE(contains(result.output, "W-GAP: no file for tile(s) 1002")) << result.output;
+    EXPECT_FALSE(contains(result.output, "W-SCENE: displacement")) << "once is enough: " << result.output;
     EXPECT_TRUE(contains(result.output, "W-SCENE: mesh 'two': creases")) << result.output;
+}
+
+TEST_F(Inspect, layers_of_a_picture_are_listed_and_one_that_nobody_chose_is_warned_of) {
+    Image image;
+    image.width = image.full_width = image.height = image.full_height = 4;
+    image.channels = {"a.R", "a.G", "a.B", "vdm.R", "vdm.G", "vdm.B"};
+    for (int k = 0; k < 16; ++k) image.pixels.insert(image.pixels.end(), {0, 0, 0, 0, 0, 0.25f});
+    write_image(image, folder_ / "layers.exr");
+    const CommandResult usual = run({"inspect", "layers.exr", "--strict"});
+    EXPECT_EQ(usual.exit_code, 6) << usual.output;
+    EXPECT_TRUE(contains(usual.output, "part.0")) << usual.output;
+    EXPECT_TRUE(contains(usual.output, "layer 'a' R G B (float); layer 'vdm' R G B (float)")) << usual.output;
+    EXPECT_TRUE(contains(usual.output, "W-READ: layers.exr: Relief reads layer 'a'")) << usual.output;
+    const CommandResult chosen = run({"inspect", "layers.exr:vdm"});
+    EXPECT_FALSE(contains(chosen.output, "W-READ")) << chosen.output;
+    EXPECT_TRUE(contains(chosen.output, "B           0.25 to 0.25")) << chosen.output;
+    const std::vector<std::string> render = {"render",   "plane.obj", "--vdm", "layers.exr", "--preset",
+                                             "genvdm",   "--size",    "8x8",   "--spp",      "1",
+                                             "--strict", "-o",        "o.png"};
+    const CommandResult refused = run(render);
+    EXPECT_EQ(refused.exit_code, 6) << refused.errors;
+    EXPECT_TRUE(contains(refused.errors, "layers.exr:vdm")) << refused.errors;
+    const CommandResult converted = run({"convert", "plane.obj", "--vdm", "layers.exr:vdm", "--preset",
+                                         "genvdm", "--level", "1", "-o", "o.obj"});
+    EXPECT_EQ(converted.exit_code, 0) << converted.errors;
+    EXPECT_FALSE(contains(converted.errors, "warning")) << converted.errors;
+    EXPECT_EQ(load_mesh(folder_ / "o.obj").positions[0].z, 0.25f);
 }
 
 TEST_F(Inspect, options_of_maps_are_refused_elsewhere) {

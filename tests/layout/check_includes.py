@@ -40,7 +40,7 @@ LIBRARIES = {
     r"xxhash\.h": ["src/base"],
     r"hwy/": ["src/math", "src/formulas", "src/surface", "src/cpu"],
     r"OpenImageIO/|OpenColorIO/": ["src/io/picture/module"],
-    r"Imath/|OpenEXR/|png\.h": ["src/io"],
+    r"Imath/|OpenEXR/|png\.h|tiffio\.h|jpeglib\.h|jerror\.h": ["src/io"],
     r"assimp/|draco/|meshoptimizer\.h": ["src/io"],
     r"nlohmann/": ["src/io", "apps/common/report_files.cpp"],
     r"CLI/": ["apps"],

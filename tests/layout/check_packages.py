@@ -18,6 +18,8 @@ PACKAGES = {
     "OPENCOLORIO_FOLDER": ["libopencolorio-dev"],
     "OpenEXR": ["libopenexr-dev", "libimath-dev"],
     "PNG": ["libpng-dev"],
+    "TIFF": ["libtiff-dev"],
+    "JPEG": ["libjpeg-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],
     "assimp": ["libassimp-dev"],
     "DRACO_LIBRARY": ["libdraco-dev"],

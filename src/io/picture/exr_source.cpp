@@ -17,34 +17,14 @@
 #include <fmt/format.h>
 
 #include "io/picture/exr_names.h"
+#include "io/picture/exr_pixels.h"
+#include "io/picture/exr_stream.h"
 #include "io/picture/exr_threads.h"
 #include "io/picture/picture_error.h"
 
 namespace relief {
 
 namespace {
-
-/// A stream of ours as OpenEXR wants it.
-class ExrInputStream final : public Imf::IStream {
-  public:
-    ExrInputStream(std::unique_ptr<std::istream> stream, const std::string& name)
-        : IStream(name.c_str()), stream_(std::move(stream)) {}
-
-    bool read(char bytes[], int count) override {
-        if (!stream_->read(bytes, count))
-            throw std::runtime_error(stream_->eof() ? "unexpected end of file" : "the file cannot be read");
-        return stream_->peek() != std::istream::traits_type::eof();
-    }
-    uint64_t tellg() override { return uint64_t(std::streamoff(stream_->tellg())); }
-    void seekg(uint64_t position) override {
-        stream_->clear();
-        stream_->seekg(std::streamoff(position));
-    }
-    void clear() override { stream_->clear(); }
-
-  private:
-    std::unique_ptr<std::istream> stream_;
-};
 
 /// Whether the first eight bytes are those of an EXR file of one part and flat pixels.
 bool is_flat_exr(std::istream& stream) {
@@ -90,18 +70,15 @@ std::optional<std::vector<std::string>> order_channels(const Imf::ChannelList& c
     return names;
 }
 
-int count_pixels(int least, int greatest) {
-    return int(std::clamp<int64_t>(int64_t(greatest) - least + 1, 0, std::numeric_limits<int>::max()));
-}
-
 PixelHeader make_header(const Imf::Header& exr, std::vector<std::string> channels) {
     PixelHeader header;
     const Imath::Box2i &data = exr.dataWindow(), &display = exr.displayWindow();
     header.x = data.min.x, header.y = data.min.y;
-    header.width = count_pixels(data.min.x, data.max.x), header.height = count_pixels(data.min.y, data.max.y);
+    header.width = count_exr_pixels(data.min.x, data.max.x),
+    header.height = count_exr_pixels(data.min.y, data.max.y);
     header.full_x = display.min.x, header.full_y = display.min.y;
-    header.full_width = count_pixels(display.min.x, display.max.x);
-    header.full_height = count_pixels(display.min.y, display.max.y);
+    header.full_width = count_exr_pixels(display.min.x, display.max.x);
+    header.full_height = count_exr_pixels(display.min.y, display.max.y);
     const bool is_half = !channels.empty() && exr.channels()[channels.front()].type == Imf::HALF;
     header.type = is_half ? SampleType::float16 : SampleType::float32;
     header.pixel_bytes = channels.size() * (is_half ? 2 : 4);

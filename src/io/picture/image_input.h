@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "io/picture/picture_remarks.h"
 #include "io/picture/pixel_source.h"
+#include "relief/io.h"
 
 namespace relief {
 
@@ -17,6 +19,13 @@ namespace relief {
 std::unique_ptr<PixelSource> open_image(const std::filesystem::path& file);
 /// The same for the bytes of a file, which must outlive the source; the extension of `name` tells the kind.
 std::unique_ptr<PixelSource> open_image_bytes(std::string_view bytes, const std::string& name);
+
+/// The layer of a picture that its name means, as read_texture reads it, and what was noticed. Throws as
+/// open_image, and Error{bad_input} for a layer or part that is not there.
+std::unique_ptr<PixelSource> open_texture(const PictureName& name, PictureRemarks& remarks);
+/// The same for the bytes of a file, which must outlive the source.
+std::unique_ptr<PixelSource> open_texture_bytes(std::string_view bytes, const std::string& name,
+                                                PictureRemarks& remarks);
 
 /// read_texture for the bytes of a file; throws as it does.
 Texture parse_texture(std::string_view bytes, const std::string& name);

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <new>
 #include <sstream>
+#include <utility>
 
 #include "image/texel_layout.h"
 #include "io/picture/color_space.h"
@@ -70,6 +71,11 @@ Texture read_pixels(PixelSource& source, const std::string& name) {
     return texture;
 }
 
+void add_remarks(PictureRemarks remarks, Texture& texture) {
+    texture.warnings = std::move(remarks.warnings), texture.notes = std::move(remarks.notes);
+    texture.is_cube_map = remarks.is_cube_map;
+}
+
 template <class Read> auto with_memory_error(const std::string& name, const Read& read) {
     try {
         return read();
@@ -83,8 +89,11 @@ template <class Read> auto with_memory_error(const std::string& name, const Read
 
 Texture read_texture(const std::filesystem::path& file) {
     return with_memory_error(file.string(), [&] {
-        Texture texture = read_pixels(*open_image(file), file.string());
-        std::ifstream stream(file, std::ios::binary);
+        const PictureName name = split_picture_name(file.string());
+        PictureRemarks remarks;
+        Texture texture = read_pixels(*open_texture(name, remarks), file.string());
+        add_remarks(std::move(remarks), texture);
+        std::ifstream stream(name.file, std::ios::binary);
         texture.colour_tag = find_color_tag(stream);
         return texture;
     });
@@ -92,7 +101,9 @@ Texture read_texture(const std::filesystem::path& file) {
 
 Texture parse_texture(std::string_view bytes, const std::string& name) {
     return with_memory_error(name, [&] {
-        Texture texture = read_pixels(*open_image_bytes(bytes, name), name);
+        PictureRemarks remarks;
+        Texture texture = read_pixels(*open_texture_bytes(bytes, name, remarks), name);
+        add_remarks(std::move(remarks), texture);
         std::istringstream stream{std::string(bytes)};
         texture.colour_tag = find_color_tag(stream);
         return texture;

@@ -59,9 +59,11 @@ const PictureLibrary& get_picture_library(const std::string& name) {
 #else
 
 const PictureLibrary& get_picture_library(const std::string& name) {
-    throw Error(ErrorKind::failed,
-                {"needs OpenImageIO and OpenColorIO, which this build of Relief is without", name,
-                 "EXR and PNG need neither; Python takes arrays in place of pictures"});
+    throw Error(
+        ErrorKind::failed,
+        {"needs OpenImageIO and OpenColorIO, which this build of Relief is without", name,
+         "save it as EXR, or as PNG, HDR, JPEG or TIFF of grey or RGB; Python takes arrays in place of "
+         "pictures"});
 }
 
 #endif

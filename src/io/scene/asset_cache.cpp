@@ -161,7 +161,7 @@ void AssetCache::change_given(SceneAssets given) {
     std::swap(given_, given);
     std::erase_if(textures_, [&](const auto& entry) {
         const auto& [key, kept] = entry;
-        if (kept.stamp) return kept.stamp != read_stamp(std::get<0>(key));
+        if (kept.stamp) return kept.stamp != read_stamp(split_picture_name(std::get<0>(key)).file);
         const auto before = given.textures.find(std::get<0>(key));
         return before == given.textures.end() || find_given(before->first) != before->second;
     });
@@ -185,11 +185,28 @@ std::shared_ptr<const Texture> AssetCache::load(const std::string& file, Texture
     const TextureKey key(path.string(), use, channel, space);
     Kept<Texture>& cached = textures_[key];
     cached.frame = frame_;
-    if (cached.value) return cached.value;
-    stop_if_asked();
-    if (!given) cached.stamp = read_stamp(path);
-    auto texture = std::make_shared<Texture>(given ? *given : read_texture(path));
-    return cached.value = decode(std::move(texture), use, channel, space);
+    if (!cached.value) {
+        stop_if_asked();
+        if (!given) cached.stamp = read_stamp(split_picture_name(path.string()).file);
+        auto texture = std::make_shared<Texture>(given ? *given : read_texture(path));
+        cached.value = decode(std::move(texture), use, channel, space);
+    }
+    for (const std::string& warning : cached.value->warnings)
+        if (told_of_pictures_.insert(warning).second) warnings_.push_back(warning);
+    return cached.value;
+}
+
+std::string AssetCache::name_layer(const std::string& file, const std::string& part,
+                                   const std::string& layer) {
+    const auto join = [&](const std::string& name) {
+        return name.empty() ? name : join_picture_name({name, part, layer});
+    };
+    const auto found = sequences_.find(file);
+    if (found == sequences_.end()) return join(file);
+    SequenceFiles files = found->second;
+    files.first = join(files.first), files.second = join(files.second);
+    add_sequence(files);
+    return name_blend(files);
 }
 
 std::shared_ptr<const Texture> AssetCache::decode(std::shared_ptr<Texture> texture, TextureUse use,
@@ -203,6 +220,11 @@ std::shared_ptr<const Texture> AssetCache::decode(std::shared_ptr<Texture> textu
     if (channel > 0) move_first(*texture, channel);
     if (use == TextureUse::data) return texture;
     check_finite(*texture, 0);
+    if (use == TextureUse::radiance && texture->is_cube_map)
+        throw Error(
+            ErrorKind::bad_input,
+            {"is a map of a cube's faces (envmap), and surroundings are read by longitude and latitude",
+             texture->file, "OpenEXR's command line: exrenvmap -l IN.exr OUT.exr"});
     if (use == TextureUse::color && space.empty()) decode_colors(*texture);
     if (use != TextureUse::vector) spread_grey(*texture);
     if (!space.empty()) decode_texture(space, *texture);
@@ -229,7 +251,8 @@ std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse 
         if (!find_given(file)) refuse_wildcard(resolve(file));
         tiles.push_back({1001, load(file, use, channel, space)});
         if (find_given(file) || !single_tiles_.insert(file).second) return tiles;
-        if (const std::string pattern = find_tile_pattern(resolve(file)); !pattern.empty())
+        const PictureName name = split_picture_name(resolve(file).string());
+        if (const std::string pattern = find_tile_pattern(name.file); !pattern.empty())
             warnings_.push_back(
                 fmt::format("{}: is one tile of several, and the only one read; name them all "
                             "as {}",
@@ -237,8 +260,11 @@ std::vector<MapTile> AssetCache::load_tiles(const std::string& file, TextureUse 
         return tiles;
     }
     if (tiles = load_given_tiles(file, use, channel, space); !tiles.empty()) return tiles;
-    for (const auto& [udim, path] : find_tiles(resolve(file)))
-        tiles.push_back({udim, load(fs::absolute(path).string(), use, channel, space)});
+    PictureName name = split_picture_name(resolve(file).string());
+    for (const auto& [udim, path] : find_tiles(name.file)) {
+        name.file = fs::absolute(path).string();
+        tiles.push_back({udim, load(join_picture_name(name), use, channel, space)});
+    }
     return tiles;
 }
 

@@ -57,11 +57,15 @@ class AssetCache {
     bool has_kept() const { return !given_.kept_meshes.empty(); }
 
     /// Another reading of the scene begins: it is warned of all again.
-    void begin() { single_tiles_.clear(), told_of_meshes_.clear(), warnings_.clear(); }
+    void begin() {
+        single_tiles_.clear(), told_of_meshes_.clear(), told_of_pictures_.clear(), warnings_.clear();
+    }
     /// What is loaded from now on belongs to a frame; names that name_blend() made are known no more.
     void set_frame(int64_t frame) { frame_ = frame, sequences_.clear(); }
     /// Makes name_blend(files), and the name of one alone, stand for these files of a sequence.
     void add_sequence(const SequenceFiles& files) { sequences_[name_blend(files)] = files; }
+    /// The name of a layer and part of a file, or of the files that the name of a sequence stands for.
+    std::string name_layer(const std::string& file, const std::string& part, const std::string& layer);
     /// Meshes of sequences stay, though no two of them are blended.
     void keep_meshes(bool is_wanted) { keeps_meshes_ = is_wanted; }
     /// Lets go of what nobody uses and belongs to none of the frames from `first` to `last`.
@@ -131,7 +135,8 @@ class AssetCache {
     Seen finite_;
     int64_t frame_ = 1;
     bool keeps_meshes_ = false;
-    std::set<std::string> single_tiles_; ///< names that were looked at
+    std::set<std::string> told_of_pictures_; ///< warnings of textures
+    std::set<std::string> single_tiles_;     ///< names that were looked at
     std::set<std::string> told_of_meshes_;
     std::vector<std::string> warnings_;
 };

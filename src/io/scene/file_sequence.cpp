@@ -11,6 +11,7 @@
 #include "io/file_system.h"
 #include "io/scene/keyed_values.h"
 #include "io/scene/tile_names.h"
+#include "relief/io.h"
 
 namespace relief {
 
@@ -48,7 +49,7 @@ std::string name_blend(const SequenceFiles& files) {
 }
 
 std::vector<int64_t> FileSequences::list_numbers(const std::string& pattern) const {
-    const fs::path path(pattern);
+    const fs::path path(split_picture_name(pattern).file);
     const auto [folder, name] =
         split_at_number(find_with_slashes(path.is_absolute() ? path : folder_ / path));
     std::vector<int64_t> numbers;

@@ -61,7 +61,7 @@ InputTexture read_input_texture(const JsonNode& node, const MaterialInputKind& k
     const bool is_object = !node.is_string();
     if (is_object) check_texture_keys(node, kind, is_own_key);
     const JsonNode file = is_object ? node.get("file") : node;
-    const std::string name = file.as_string();
+    const std::string name = is_object ? read_picture_file(node, assets) : file.as_string();
     texture.is_udim = has_tile_token(name);
     TextureUse use = kind.is_color() ? TextureUse::color : TextureUse::number;
     if (kind.input == MaterialInput::normal) use = TextureUse::vector;
@@ -121,6 +121,17 @@ void refuse_input_textures(const JsonNode& node) {
     for (const auto& [key, reason] : kReasons)
         if (const auto found = node.find(key); found && found->is_object())
             found->fail("takes a number and no texture", reason);
+}
+
+std::string read_picture_file(const JsonNode& node, AssetCache& assets) {
+    const std::string file = node.get("file").as_string();
+    const auto part = node.find("part"), layer = node.find("layer");
+    if (!part && !layer) return file;
+    const std::string names[] = {part ? part->as_string() : "", layer ? layer->as_string() : ""};
+    const PictureName named = split_picture_name(file);
+    if (!named.part.empty() || !named.layer.empty())
+        (layer ? layer : part)->fail("the file's name has a layer already", "name it once");
+    return assets.name_layer(file, names[0], names[1]);
 }
 
 uint32_t read_channel(const JsonNode& node) {

@@ -17,6 +17,9 @@ bool is_placed_texture(const JsonNode& texture);
 /// The inputs of a material that a texture cannot drive, refused with the reason.
 void refuse_input_textures(const JsonNode& node);
 
+/// The name of the picture that `node` has under "file", with the layer and part that it names.
+std::string read_picture_file(const JsonNode& node, AssetCache& assets);
+
 /// Which of a texel's values is the number.
 uint32_t read_channel(const JsonNode& node);
 

@@ -17,7 +17,7 @@ inline constexpr auto kKeyed = make_keys("keys", "interpolation");
 inline constexpr auto kCamera =
     make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance", "shift", "shutter");
 inline constexpr auto kEnvironment =
-    make_keys("file", "color_space", "color", "strength", "rotate_degrees", "light_group");
+    make_keys("file", "layer", "part", "color_space", "color", "strength", "rotate_degrees", "light_group");
 inline constexpr auto kMaterial = make_keys(
     "base_color", "base_color_texture", "roughness", "roughness_texture", "metallic", "metallic_texture",
     "ior", "emission", "base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight",
@@ -33,16 +33,16 @@ inline constexpr auto kMaterialLacks =
               "transmission_dispersion_scale", "transmission_dispersion_abbe_number", "thin_film_weight",
               "thin_film_thickness", "thin_film_ior", "geometry_tangent", "geometry_coat_normal",
               "geometry_coat_tangent");
-inline constexpr auto kColorTexture = make_keys("file", "filter", "color_space", "uv_set");
-inline constexpr auto kDataTexture = make_keys("file", "filter", "channel", "uv_set");
+inline constexpr auto kColorTexture = make_keys("file", "layer", "part", "filter", "color_space", "uv_set");
+inline constexpr auto kDataTexture = make_keys("file", "layer", "part", "filter", "channel", "uv_set");
 inline constexpr auto kNormalTexture =
-    make_keys("file", "filter", "scale", "flip_y", "wrap", "uv_scale", "uv_offset");
+    make_keys("file", "layer", "part", "filter", "scale", "flip_y", "wrap", "uv_scale", "uv_offset");
 /// In place of the number or colour of an input.
-inline constexpr auto kInputTexture = make_keys("file", "factor", "filter", "channel", "color_space", "wrap",
-                                                "uv_scale", "uv_offset", "uv_set");
+inline constexpr auto kInputTexture = make_keys("file", "layer", "part", "factor", "filter", "channel",
+                                                "color_space", "wrap", "uv_scale", "uv_offset", "uv_set");
 inline constexpr auto kDisplacement =
-    make_keys("type", "file", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale",
-              "flip_v", "wrap", "dilate", "filter", "dequantize", "autobump");
+    make_keys("type", "file", "layer", "part", "preset", "space", "axes", "frame", "lengths", "encoding",
+              "midlevel", "scale", "flip_v", "wrap", "dilate", "filter", "dequantize", "autobump");
 inline constexpr auto kMesh = make_keys("file", "uv_set", "animation", "time", "subdivision", "weld");
 inline constexpr auto kSubdivision = make_keys("scheme", "level", "uv", "boundary", "creases");
 inline constexpr auto kObject =

@@ -51,7 +51,7 @@ std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::strin
                                                 const std::string& space = {}) {
     const auto found = node.find(key);
     if (!found) return nullptr;
-    const std::string file = found->as_string();
+    const std::string file = key == "file" ? read_picture_file(node, assets) : found->as_string();
     return found->with_place([&] { return assets.load(file, use, channel, space); });
 }
 
@@ -404,7 +404,7 @@ Displacement read_displacement(const JsonNode& node, const std::string& name, As
     MapOptions& options = request.options;
     const auto as_text = [](const JsonNode& n) { return n.as_string(); };
     const auto as_factors = [](const JsonNode& n) { return n.as_vec3_or_number(); };
-    request.file = node.get("file").as_string();
+    request.file = read_picture_file(node, assets);
     read_optional(node, "preset", options.preset, as_text);
     read_optional(node, "type", options.type, as_text);
     read_optional(node, "space", options.space, as_text);

@@ -76,7 +76,7 @@ std::vector<std::filesystem::path> Shot::list_files(double frame) const {
     const AssetCache assets(self.file.parent_path());
     std::vector<std::filesystem::path> files = {self.file};
     for (const std::string& name : self.reader.list_names(frame)) {
-        const std::filesystem::path file = assets.resolve(name);
+        const std::filesystem::path file = assets.resolve(split_picture_name(name).file);
         std::error_code code;
         if (has_tile_token(name))
             for (auto& [udim, tile] : find_tiles(file)) files.push_back(std::move(tile));

@@ -1,0 +1,144 @@
+#include "io/picture/jpeg_source.h"
+
+#include <array>
+#include <csetjmp>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <iterator>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include "io/picture/exif_orientation.h"
+#include "io/picture/jpeg_end.h"
+#include "io/picture/picture_error.h"
+#include "io/picture/row_source.h"
+
+namespace relief {
+
+namespace {
+
+/// libjpeg's own, and where it jumps to.
+struct Errors {
+    jpeg_error_mgr manager; ///< first, so that a pointer to it is one to this
+    std::jmp_buf place;
+    std::array<char, JMSG_LENGTH_MAX> message{};
+};
+
+[[noreturn]] void on_error(j_common_ptr info) {
+    auto& errors = *reinterpret_cast<Errors*>(info->err);
+    info->err->format_message(info, errors.message.data());
+    std::longjmp(errors.place, 1);
+}
+
+void on_message(j_common_ptr, int) {}
+
+class JpegSource final : public RowSource {
+  public:
+    JpegSource(std::vector<uint8_t> bytes, std::string name, PictureRemarks& remarks)
+        : name_(std::move(name)), bytes_(std::move(bytes)) {
+        info_.err = jpeg_std_error(&errors_.manager);
+        errors_.manager.error_exit = on_error;
+        errors_.manager.emit_message = on_message;
+        try {
+            run([&] {
+                jpeg_create_decompress(&info_);
+                jpeg_save_markers(&info_, JPEG_APP0 + 1, 0xffff);
+                read_header();
+            });
+            fill_header(remarks);
+        } catch (...) {
+            jpeg_destroy_decompress(&info_);
+            throw;
+        }
+    }
+    ~JpegSource() override { jpeg_destroy_decompress(&info_); }
+    JpegSource(const JpegSource&) = delete;
+    JpegSource& operator=(const JpegSource&) = delete;
+
+    bool is_known() const { return is_known_; }
+
+  private:
+    /// `call` uses libjpeg and makes no object with a destructor: a jump would pass it by.
+    template <class Call> void run(const Call& call) {
+        if (setjmp(errors_.place) == 0) {
+            call();
+            return;
+        }
+        if (info_.err->msg_code == JERR_OUT_OF_MEMORY) throw std::bad_alloc();
+        fail_damaged(name_, std::string("cannot be read: ") + errors_.message.data());
+    }
+
+    void read_header() {
+        jpeg_mem_src(&info_, bytes_.data(), static_cast<unsigned long>(bytes_.size()));
+        jpeg_read_header(&info_, TRUE);
+    }
+
+    void fill_header(PictureRemarks& remarks) {
+        const bool is_grey = info_.jpeg_color_space == JCS_GRAYSCALE;
+        is_known_ = is_grey || info_.jpeg_color_space == JCS_YCbCr || info_.jpeg_color_space == JCS_RGB;
+        space_ = is_grey ? JCS_GRAYSCALE : JCS_RGB;
+        header_.width = header_.full_width = int(info_.image_width);
+        header_.height = header_.full_height = int(info_.image_height);
+        header_.type = SampleType::uint8;
+        header_.channels = is_grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+        header_.pixel_bytes = header_.channels.size();
+        int orientation = kUpright;
+        for (const jpeg_marker_struct* marker = info_.marker_list; marker; marker = marker->next)
+            if (const int found = find_exif_orientation({marker->data, marker->data_length}))
+                orientation = found;
+        turn(orientation, name_, remarks);
+    }
+
+    void decode(const VisitRow& visit) override {
+        if (is_read_) run([&] { jpeg_abort_decompress(&info_), read_header(); });
+        is_read_ = true;
+        run([&] {
+            info_.out_color_space = space_;
+            jpeg_start_decompress(&info_);
+        });
+        const size_t count = size_t(info_.output_width) * header_.channels.size();
+        std::vector<uint8_t> row(count);
+        std::vector<float> values(count);
+        while (info_.output_scanline < info_.output_height) {
+            const int y = int(info_.output_scanline);
+            uint8_t* rows[] = {row.data()};
+            run([&] { jpeg_read_scanlines(&info_, rows, 1); });
+            for (size_t k = 0; k < count; ++k) values[k] = float(row[k]) * (1.0f / 255);
+            visit(y, values.data());
+        }
+        run([&] { jpeg_finish_decompress(&info_); });
+    }
+
+    std::string name_;
+    std::vector<uint8_t> bytes_;
+    Errors errors_{};
+    jpeg_decompress_struct info_{};
+    J_COLOR_SPACE space_ = JCS_RGB;
+    bool is_known_ = false, is_read_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<PixelSource> open_jpeg(std::unique_ptr<std::istream> stream, const std::string& name,
+                                       PictureRemarks& remarks) {
+    std::array<char, 2> start{};
+    stream->read(start.data(), 2);
+    if (!*stream || start[0] != '\xff' || start[1] != '\xd8') return nullptr;
+    stream->seekg(0);
+    if (!has_jpeg_end(*stream)) fail_damaged(name, "ends in the middle of its picture");
+    stream->clear();
+    stream->seekg(0);
+    std::vector<uint8_t> bytes((std::istreambuf_iterator<char>(*stream)), std::istreambuf_iterator<char>());
+    PictureRemarks own;
+    auto source = std::make_unique<JpegSource>(std::move(bytes), name, own);
+    if (!source->is_known()) return nullptr;
+    remarks.notes.insert(remarks.notes.end(), own.notes.begin(), own.notes.end());
+    return source;
+}
+
+} // namespace relief

@@ -1,0 +1,19 @@
+// JPEG pictures read by libjpeg.
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <string>
+
+#include "io/picture/picture_remarks.h"
+#include "io/picture/pixel_source.h"
+
+namespace relief {
+
+/// Nothing where the stream is no JPEG file, or its samples are neither grey nor colours (CMYK). Colours
+/// become R, G, B, grey a channel Y. The orientation of Exif is followed. Throws Error{bad_input} for a
+/// damaged file.
+std::unique_ptr<PixelSource> open_jpeg(std::unique_ptr<std::istream> stream, const std::string& name,
+                                       PictureRemarks& remarks);
+
+} // namespace relief

@@ -1,0 +1,251 @@
+// HDR, TIFF and JPEG files read by the library itself, as OpenImageIO reads them; orientations and windows.
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/imageio.h>
+
+#include "io/picture/exif_orientation.h"
+#include "io/picture/hdr_source.h"
+#include "io/picture/jpeg_source.h"
+#include "io/picture/picture_library.h"
+#include "io/picture/tiff_source.h"
+#include "io/test_files.h"
+#include "relief/io.h"
+
+namespace relief {
+
+namespace {
+
+constexpr int kWidth = 37, kHeight = 21;
+
+std::unique_ptr<PixelSource> open_own(const std::filesystem::path& file, PictureRemarks& remarks) {
+    for (const auto& open : {open_hdr, open_tiff, open_jpeg})
+        if (auto source =
+                open(std::make_unique<std::ifstream>(file, std::ios::binary), file.string(), remarks))
+            return source;
+    return nullptr;
+}
+
+std::vector<float> read_all(PixelSource& source) {
+    const PixelHeader& header = source.header();
+    const size_t count = header.channels.size();
+    std::vector<float> values(size_t(header.width) * size_t(header.height) * count);
+    source.read_floats(int(count), count, values.data());
+    return values;
+}
+
+} // namespace
+
+class OwnPictures : public FileTest {
+  protected:
+    std::filesystem::path write_picture(const std::string& name, int channels, OIIO::TypeDesc type,
+                                        const std::function<void(OIIO::ImageSpec&)>& change = {},
+                                        int width = kWidth, int height = kHeight) const {
+        std::vector<float> values(size_t(width) * size_t(height) * size_t(channels));
+        for (size_t k = 0; k < values.size(); ++k) values[k] = float((k * 31) % 101) / 100;
+        const std::filesystem::path file = folder_ / name;
+        auto output = OIIO::ImageOutput::create(file.string());
+        OIIO::ImageSpec spec(width, height, channels, type);
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+        if (change) change(spec);
+        EXPECT_TRUE(output->open(file.string(), spec)) << output->geterror();
+        EXPECT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, values.data())) << output->geterror();
+        EXPECT_TRUE(output->close());
+        return file;
+    }
+
+    static void expect_as_by_the_module(const std::filesystem::path& file) {
+        SCOPED_TRACE(file.filename());
+        PictureRemarks remarks;
+        const auto own = open_own(file, remarks);
+        ASSERT_TRUE(own);
+        const auto other = get_picture_library("test").open_file(file.string());
+        EXPECT_EQ(own->header().width, other->header().width);
+        EXPECT_EQ(own->header().height, other->header().height);
+        EXPECT_EQ(own->header().type, other->header().type);
+        ASSERT_EQ(own->header().channels.size(), other->header().channels.size());
+        const std::vector<float> a = read_all(*own), b = read_all(*other);
+        for (size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], 1e-6f) << k;
+        EXPECT_EQ(read_all(*own), a) << "a second time";
+        EXPECT_EQ(read_texture(file).width, uint32_t(own->header().width));
+    }
+};
+
+TEST_F(OwnPictures, tiff_of_all_types_and_layouts_is_read_as_by_the_module) {
+    int number = 0;
+    for (const OIIO::TypeDesc type : {OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16, OIIO::TypeDesc::UINT32,
+                                      OIIO::TypeDesc::HALF, OIIO::TypeDesc::FLOAT})
+        for (const int channels : {1, 3, 4})
+            for (const char* const compression : {"none", "zip", "lzw"})
+                for (const bool is_tiled : {false, true})
+                    for (const char* const planar : {"contig", "separate"}) {
+                        const std::filesystem::path file =
+                            write_picture("t" + std::to_string(number++) + ".tif", channels, type,
+                                          [&](OIIO::ImageSpec& spec) {
+                                              spec.attribute("compression", compression);
+                                              spec.attribute("planarconfig", planar);
+                                              if (is_tiled) spec.tile_width = spec.tile_height = 16;
+                                          });
+                        expect_as_by_the_module(file);
+                        if (HasFatalFailure()) return;
+                    }
+}
+
+TEST_F(OwnPictures, tiff_of_few_bits_and_of_either_byte_order_is_read_as_by_the_module) {
+    for (const int bits : {1, 2, 4})
+        expect_as_by_the_module(
+            write_picture("b" + std::to_string(bits) + ".tif", 1, OIIO::TypeDesc::UINT8,
+                          [&](OIIO::ImageSpec& spec) { spec.attribute("oiio:BitsPerSample", bits); }));
+    expect_as_by_the_module(write_picture("big.tif", 3, OIIO::TypeDesc::UINT16,
+                                          [](OIIO::ImageSpec& spec) { spec.attribute("tiff:bigtiff", 1); }));
+}
+
+TEST_F(OwnPictures, tiff_of_jpeg_tiles_has_colours_and_no_chroma) {
+    const std::filesystem::path file = folder_ / "jpeg.tif";
+    std::vector<float> values;
+    for (int k = 0; k < 64 * 64; ++k) values.insert(values.end(), {0.8f, 0.4f, 0.2f});
+    auto output = OIIO::ImageOutput::create(file.string());
+    OIIO::ImageSpec spec(64, 64, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("compression", "jpeg");
+    ASSERT_TRUE(output->open(file.string(), spec));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, values.data()) && output->close());
+    const Texture texture = read_texture(file);
+    for (size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(texture.floats[texture.find_texel(30, 20) + c], values[c], 0.03f) << c;
+}
+
+TEST_F(OwnPictures, hdr_is_read_as_by_the_module) {
+    expect_as_by_the_module(write_picture("a.hdr", 3, OIIO::TypeDesc::FLOAT));
+    // Too narrow for runs.
+    expect_as_by_the_module(write_picture("narrow.hdr", 3, OIIO::TypeDesc::FLOAT, {}, 5, 3));
+    Image image;
+    image.width = image.full_width = 40, image.height = image.full_height = 2;
+    image.channels = {"R", "G", "B"};
+    for (int k = 0; k < 240; ++k) image.pixels.push_back(k < 120 ? 2.5f : float(k) * 100);
+    write_image(image, folder_ / "own.hdr");
+    expect_as_by_the_module(folder_ / "own.hdr");
+}
+
+TEST_F(OwnPictures, hdr_with_repeated_pixels_and_other_scan_lines_is_read) {
+    const auto pixel = [](int r, int g, int b, int e) {
+        return std::string{char(r), char(g), char(b), char(e)};
+    };
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    const Texture runs =
+        read_texture(write("runs.hdr", header + "-Y 1 +X 4\n" + pixel(128, 0, 64, 129) + pixel(1, 1, 1, 3)));
+    for (size_t x = 0; x < 4; ++x) {
+        EXPECT_EQ(runs.floats[3 * x], 1.0f);
+        EXPECT_EQ(runs.floats[3 * x + 2], 0.5f);
+    }
+    const std::string two = pixel(128, 0, 0, 129) + pixel(0, 128, 0, 129);
+    const Texture turned = read_texture(write("turned.hdr", header + "-Y 1 -X 2\n" + two));
+    EXPECT_EQ(turned.floats[0], 0.0f);
+    EXPECT_EQ(turned.floats[3], 1.0f);
+    ASSERT_EQ(turned.notes.size(), 1u);
+    const Texture columns = read_texture(write("columns.hdr", header + "+X 2 -Y 1\n" + two));
+    EXPECT_EQ(columns.width, 2u);
+    EXPECT_EQ(columns.floats[0], 1.0f);
+    EXPECT_HAS(message_of([&] { read_texture(write("cut.hdr", header + "-Y 2 +X 2\n" + two)); }),
+               "ends too early");
+    EXPECT_HAS(
+        message_of([&] { read_texture(write("run.hdr", header + "-Y 1 +X 2\n" + pixel(1, 1, 1, 9) + two)); }),
+        "damaged");
+}
+
+TEST_F(OwnPictures, jpeg_is_read_as_by_the_module) {
+    for (const int channels : {1, 3}) {
+        expect_as_by_the_module(
+            write_picture("a" + std::to_string(channels) + ".jpg", channels, OIIO::TypeDesc::UINT8));
+        expect_as_by_the_module(write_picture("p" + std::to_string(channels) + ".jpg", channels,
+                                              OIIO::TypeDesc::UINT8, [](OIIO::ImageSpec& spec) {
+                                                  spec.attribute("jpeg:progressive", 1);
+                                                  spec.attribute("jpeg:subsampling", "4:2:0");
+                                              }));
+    }
+}
+
+TEST_F(OwnPictures, are_turned_as_their_orientation_says) {
+    // Bright in the file's first row and column alone.
+    for (const char* const name : {"o.tif", "o.jpg"})
+        for (int orientation = 1; orientation <= 8; ++orientation) {
+            const std::filesystem::path file = folder_ / name;
+            constexpr int kFileWidth = 48, kFileHeight = 32;
+            std::vector<uint8_t> values(size_t(kFileWidth) * kFileHeight, 0);
+            for (int y = 0; y < 8; ++y)
+                for (int x = 0; x < 16; ++x)
+                    values[size_t(y * kFileWidth + x)] = 255; // at the top left, wide
+            auto output = OIIO::ImageOutput::create(file.string());
+            OIIO::ImageSpec spec(kFileWidth, kFileHeight, 1, OIIO::TypeDesc::UINT8);
+            spec.attribute("Orientation", orientation);
+            ASSERT_TRUE(output->open(file.string(), spec));
+            ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, values.data()) && output->close());
+            const Texture texture = read_texture(file);
+            const bool is_turned = orientation >= 5;
+            EXPECT_EQ(texture.width, uint32_t(is_turned ? kFileHeight : kFileWidth));
+            EXPECT_EQ(texture.notes.size(), orientation == 1 ? 0u : 1u);
+            // Where the first row and column of the file are seen (TIFF 6.0, Orientation).
+            const bool is_right =
+                orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
+            const bool is_bottom =
+                orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
+            const uint32_t wide = is_turned ? 6 : 12, high = is_turned ? 12 : 6;
+            const uint32_t x = is_right ? texture.width - wide : wide - 1,
+                           y = is_bottom ? texture.height - high : high - 1;
+            EXPECT_GT(texture.floats[texture.find_texel(x, y)], 0.9f) << name << " " << orientation;
+            EXPECT_LT(texture.floats[texture.find_texel(texture.width - 1 - x, y)], 0.1f)
+                << name << orientation;
+            EXPECT_LT(texture.floats[texture.find_texel(x, texture.height - 1 - y)], 0.1f)
+                << name << orientation;
+        }
+}
+
+TEST_F(OwnPictures, tiff_windows_are_put_into_their_picture) {
+    const std::filesystem::path file =
+        write_picture("w.tif", 1, OIIO::TypeDesc::FLOAT, [](OIIO::ImageSpec& spec) {
+            spec.x = 3, spec.y = 2, spec.full_x = 0, spec.full_y = 0, spec.full_width = 50,
+            spec.full_height = 30;
+        });
+    const Texture texture = read_texture(file);
+    EXPECT_EQ(texture.width, 50u);
+    EXPECT_EQ(texture.height, 30u);
+    EXPECT_EQ(texture.floats[texture.find_texel(2, 2)], 0.0f);
+    EXPECT_EQ(texture.floats[texture.find_texel(4, 2)], 0.31f);
+    ASSERT_EQ(texture.notes.size(), 1u);
+    EXPECT_HAS(texture.notes[0], "at (3, 2) of a picture of 50 x 30");
+}
+
+TEST_F(OwnPictures, that_are_cut_are_refused) {
+    for (const char* const name : {"c.tif", "c.jpg", "c.hdr"}) {
+        const std::filesystem::path file = write_picture(
+            name, 3, std::string(name) == "c.hdr" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8, {}, 90,
+            90);
+        std::ifstream stream(file, std::ios::binary);
+        const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+        for (const size_t length : {bytes.size() - 40, bytes.size() / 2, size_t(40), size_t(3)}) {
+            write(std::string("cut.") + name, bytes.substr(0, length));
+            EXPECT_THROW(read_texture(folder_ / (std::string("cut.") + name)), Error)
+                << name << " " << length;
+        }
+    }
+}
+
+TEST_F(OwnPictures, of_other_kinds_are_named_with_a_way_out) {
+    for (const auto& [name, kind] : {std::pair("a.ktx2", "KTX"),
+                                     {"a.ktx", "KTX"},
+                                     {"a.dpx", "DPX"},
+                                     {"a.jxl", "JPEG XL"},
+                                     {"a.pfm", "Netpbm"},
+                                     {"a.cr2", "raw"}}) {
+        const std::filesystem::path file = write(name, "something");
+        const std::string message = message_of([&] { read_texture(file); });
+        EXPECT_HAS(message, kind);
+        EXPECT_HAS(message, "EXR, TIFF or PNG");
+    }
+    const std::string webp = message_of([&] { read_texture(write("x.png", "RIFF1234WEBPVP8 ....")); });
+    EXPECT_HAS(webp, "a WebP file");
+    EXPECT_EQ(webp.find("damaged"), std::string::npos);
+}
+
+} // namespace relief
