@@ -38,7 +38,7 @@ class UsdTest(unittest.TestCase):
         return np.array(entry.get("transform", {"matrix": np.eye(4)})["matrix"]).reshape(4, 4)
 
     def reported(self, path, text):
-        return any(line.startswith(f"{path}: ") and text in line for line in self.report)
+        return any(line.removeprefix("note: ").startswith(f"{path}: ") and text in line for line in self.report)
 
 
 class Meshes(UsdTest):

@@ -140,6 +140,46 @@ class Lights(UsdTest):
         self.assertAlmostEqual(self.load(stage).environment["rotate_degrees"], 210, 5)
         self.assertFalse(self.reported("/sky", "pole"))
 
+    def test_a_dome_of_rgbe_is_read_and_one_that_is_cut_is_named_and_left_out(self):
+        stage = stages.create(self.path)
+        stages.bind(stages.add_square(stage, "/m"), stages.add_material(stage, "/look"))
+        file = os.path.join(self.folder.name, "sky.hdr")
+        header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n"
+        with open(file, "wb") as sky:
+            sky.write(header + bytes((128, 128, 128, 129)) * 4)
+        dome = UsdLux.DomeLight.Define(stage, "/sky")
+        dome.CreateTextureFileAttr("./sky.hdr")
+        dome.CreateIntensityAttr(2)
+        found = self.load(stage)
+        self.assertEqual(os.path.basename(found.environment["file"]), "sky.hdr")
+        self.assertFalse(any("sky.hdr" in line for line in self.report))
+        found.validate()
+        with open(file, "wb") as sky:
+            sky.write(header + bytes((128, 128, 128, 129)) * 3)
+        found = self.load()
+        self.assertNotIn("file", found.environment)
+        self.assertEqual(found.environment["strength"], 2)
+        self.assertTrue(self.reported("environment", "sky.hdr cannot be read and is left out"))
+        found.validate()
+
+    def test_a_displacement_whose_map_is_no_picture_is_named_and_left_out(self):
+        stage = stages.create(self.path)
+        mesh = stages.add_mesh(stage, "/m", [(0, 0, 0), (1, 0, 0), (1, 0, -1), (0, 0, -1)], [4], [0, 1, 2, 3], uvs=[(0, 0), (1, 0), (1, 1), (0, 1)])
+        with open(os.path.join(self.folder.name, "map.png"), "wb") as picture:
+            picture.write(b"no picture")
+        mesh.GetPrim().CreateAttribute("relief:displacement:file", Sdf.ValueTypeNames.Asset).Set("./map.png")
+        found = self.load(stage)
+        self.assertEqual(found.displacements, {})
+        self.assertNotIn("displacement", found.objects[0])
+        self.assertTrue(any("map.png cannot be read and is left out" in line for line in self.report), self.report)
+        found.validate()
+
+    def test_what_is_there_in_another_form_is_a_note(self):
+        stage = stages.create(self.path)
+        UsdGeom.Sphere.Define(stage, "/ball")
+        self.load(stage)
+        self.assertTrue(any(line.startswith("note: /ball: Sphere is a mesh of") for line in self.report), self.report)
+
     def test_links_become_names(self):
         stage = stages.create(self.path)
         for name in ("a", "b", "c"):

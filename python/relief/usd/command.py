@@ -8,6 +8,8 @@ import tempfile
 
 import relief
 
+from .context import NOTE
+
 FAILED, USAGE, BAD_INPUT = 1, 2, 3  # exit codes of the command relief
 
 
@@ -25,7 +27,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--subdivision-level", type=int, help="of subdivided meshes, 0 to 8; by the picture if not given")
     parser.add_argument("--vector-space", choices=("tangent", "object"), default="tangent",
                         help="what the vectors of MaterialX displacements are")
-    parser.add_argument("-q", "--quiet", action="store_true", help="no report of what is not taken over")
+    parser.add_argument("-q", "--quiet", action="store_true", help="no report of what is not taken over, and no notes")
     return parser
 
 
@@ -70,6 +72,6 @@ def run(arguments=None) -> int:
         return {"bad_input": BAD_INPUT, "usage": USAGE}.get(error.kind, FAILED)
     if not options.quiet:
         for line in report:
-            print(f"not taken over: {line}", file=sys.stderr)
+            print(line if line.startswith(NOTE) else f"not taken over: {line}", file=sys.stderr)
     print(f"wrote {name}: {len(scene.objects)} objects, {len(scene.meshes)} meshes, {len(scene.lights)} lights")
     return 0

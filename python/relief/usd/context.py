@@ -28,18 +28,31 @@ class Options:
     frames: str | None = None
 
 
+NOTE = "note: "  # starts lines of a report about what is taken over
+
+
 class Report:
-    """What is not taken over: each thing once, all of a prim in one line."""
+    """What is not taken over, and what is taken over in another form: each thing once, all of a prim in one line of each."""
 
     def __init__(self) -> None:
         self.texts: dict = {}
+        self.notes: dict = {}
 
     def add(self, prim, text: str) -> None:
-        path = prim if isinstance(prim, str) else str(prim.GetPath())
-        self.texts.setdefault(path, {})[text] = None
+        """Of what is left out or changed in its look."""
+        self.texts.setdefault(get_path(prim), {})[text] = None
+
+    def note(self, prim, text: str) -> None:
+        """Of what is all there in another form."""
+        self.notes.setdefault(get_path(prim), {})[text] = None
 
     def lines(self) -> list:
-        return [f"{path}: {'; '.join(texts)}" for path, texts in self.texts.items()]
+        return [f"{start}{path}: {'; '.join(texts)}" for start, lines in (("", self.texts), (NOTE, self.notes))
+                for path, texts in lines.items()]
+
+
+def get_path(prim) -> str:
+    return prim if isinstance(prim, str) else str(prim.GetPath())
 
 
 class Context:

@@ -8,7 +8,7 @@ from .assets import resolve_asset
 from .shading import Network, Texture, is_texture
 
 PREFIX = "relief:displacement:"
-KEYS = ("file", "name", "uvs", "type", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale", "flip_v",
+KEYS = ("file", "layer", "part", "name", "uvs", "type", "preset", "space", "axes", "frame", "lengths", "encoding", "midlevel", "scale", "flip_v",
         "wrap", "dilate", "filter", "dequantize", "autobump")
 # What MaterialX says of a vector: dP/du, dP/dv and the normal.
 TANGENT = {"space": "tangent", "axes": "t,b,n", "frame": "dpdu", "lengths": "relative"}

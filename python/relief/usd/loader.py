@@ -15,7 +15,7 @@ from .context import Context, Options, make_error
 from .lights import add_lights
 from .mtlx_files import add_files
 from .objects import ObjectReader
-from .pictures import read_other_pictures
+from .pictures import check_pictures
 from .time_range import read_range, report_other_motion
 from .walk import walk
 
@@ -215,9 +215,9 @@ def finish(context: Context, objects: ObjectReader, cameras: list, lights: list)
     add_lights(context, lights, objects.paths_of_names)
     if not scene.lights and scene.environment is None and not objects.emits():
         scene.environment = relief.Environment(color=[1, 1, 1], strength=1)
-        context.report.add("/", "has no light: a white sky is used")
+        context.report.note("/", "has no light: a white sky is used")
     if camera is None:
-        context.report.add("/", "has no camera: one that shows everything is used")
+        context.report.note("/", "has no camera: one that shows everything is used")
         scene.camera = frame_all(scene)
-    read_other_pictures(context)
+    check_pictures(context)
     return camera

@@ -91,7 +91,7 @@ class ObjectReader:
         if len(parts) == 1:
             return [Part(prim, raw.faces, parts[0].material)]
         if parts:
-            self.context.report.add(prim, f"is split into {len(parts)} objects, one a material")
+            self.context.report.note(prim, f"is split into {len(parts)} objects, one a material")
         return parts
 
     def refine(self, key: str, raw: RawMesh, parts: list) -> RawMesh:
@@ -105,7 +105,7 @@ class ObjectReader:
         for part in parts:
             part.faces = fine.faces.select(part.faces.numbers)
         reason = "as its parts have to meet" if len(parts) > 1 else "as its faces are no closed sheet"
-        self.context.report.add(raw.prim, f"is subdivided into {len(fine.faces.sizes)} flat faces, {reason}")
+        self.context.report.note(raw.prim, f"is subdivided into {len(fine.faces.sizes)} flat faces, {reason}")
         return fine
 
     def is_manifold(self, key: str, raw: RawMesh) -> bool:

@@ -39,7 +39,7 @@ def read_specular_color(network: Network, shader: UsdShade.Shader, setter: KeySe
     root = np.sqrt(largest)
     setter.keys["specular_ior"] = float((1 + root) / (1 - root))
     setter.color("specular_color", color / color.max())
-    network.note("specular workflow is a dielectric of that reflection at normal incidence")
+    network.context.report.note(network.material, "specular workflow is a dielectric of that reflection at normal incidence")
 
 
 def read_clearcoat(network: Network, shader: UsdShade.Shader, setter: KeySetter) -> None:
@@ -66,6 +66,6 @@ def read_opacity(network: Network, shader: UsdShade.Shader, setter: KeySetter) -
     if threshold > 0:
         opacity = 1.0 if opacity >= threshold else 0.0
     elif opacity < 1:
-        network.note("opacity is the part of rays that the surface stops, reflections included")
+        network.context.report.note(network.material, "opacity is the part of rays that the surface stops, reflections included")
     if opacity < 1:
         setter.number("geometry_opacity", opacity)

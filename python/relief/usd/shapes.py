@@ -27,7 +27,7 @@ def read_shape(context: Context, prim: Usd.Prim) -> RawMesh:
     raw.normals = (np.roll(normals, shift, axis=1), "vertex" if len(normals) == len(points) else "faceVarying", None)
     raw.uvs = {None: (uvs, "vertex", None)}
     if prim.GetTypeName() not in ("Cube", "Plane"):
-        context.report.add(prim, f"{prim.GetTypeName()} is a mesh of {len(quads)} faces")
+        context.report.note(prim, f"{prim.GetTypeName()} is a mesh of {len(quads)} faces")
     return raw
 
 
