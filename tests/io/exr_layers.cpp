@@ -245,6 +245,16 @@ TEST_F(ExrLayers, of_tiles_are_those_of_each_tile) {
     EXPECT_TRUE(warnings.empty()) << warnings[0];
 }
 
+TEST_F(ExrLayers, with_names_that_are_no_text_are_named_all_the_same) {
+    const std::filesystem::path file =
+        write_exr("odd.exr", {{"\xff.X", 1}, {"B", 1}, {"G", 1}, {"R", 1}, {"\xc3\xa4.X", 1}});
+    const Texture texture = read_texture(file);
+    ASSERT_EQ(texture.warnings.size(), 1u);
+    EXPECT_HAS(texture.warnings[0], "layer '?' (X)");
+    EXPECT_HAS(texture.warnings[0], "layer '\xc3\xa4' (X)");
+    EXPECT_EQ(list_picture_parts(file)[0].layers.back().name, "?");
+}
+
 TEST_F(ExrLayers, of_files_without_any_are_refused) {
     const std::filesystem::path file =
         write_pixels<uint8_t>("a.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {1, 2, 3});

@@ -20,6 +20,7 @@
 #include "io/picture/exr_stream.h"
 #include "io/picture/exr_threads.h"
 #include "io/picture/picture_error.h"
+#include "io/picture/picture_text.h"
 #include "relief/error.h"
 
 namespace relief {
@@ -160,12 +161,13 @@ class Chooser {
 
     std::string describe(size_t part, const std::string& layer,
                          const std::vector<std::string>& channels) const {
-        const std::string names = fmt::format("{}", fmt::join(channels, " "));
-        const std::string what =
-            layer.empty() ? fmt::format("channels {}", names) : fmt::format("layer '{}' ({})", layer, names);
+        const std::string names = make_printable(fmt::format("{}", fmt::join(channels, " ")));
+        const std::string what = layer.empty() ? fmt::format("channels {}", names)
+                                               : fmt::format("layer '{}' ({})", make_printable(layer), names);
         if (parts_.size() == 1) return what;
-        return parts_[part].name.empty() ? fmt::format("{} of part {}", what, part)
-                                         : fmt::format("{} of part '{}'", what, parts_[part].name);
+        return parts_[part].name.empty()
+                   ? fmt::format("{} of part {}", what, part)
+                   : fmt::format("{} of part '{}'", what, make_printable(parts_[part].name));
     }
 
     /// A name for the first thing that `chosen` leaves out.
@@ -176,7 +178,7 @@ class Chooser {
                 PictureName name{choice_.file, "", layer.name};
                 if (layer.name.empty() || part != chosen.part)
                     name.part = parts_[part].name.empty() ? std::to_string(part) : parts_[part].name;
-                return join_picture_name(name);
+                return make_printable(join_picture_name(name));
             }
         return join_picture_name({choice_.file, "", "CHANNEL"});
     }
@@ -294,7 +296,15 @@ std::vector<std::string> order_layer(std::vector<std::string> channels, size_t& 
 std::vector<PicturePart> list_exr_parts(std::unique_ptr<std::istream> stream, const std::string& name) {
     return with_damage(name, [&] {
         ExrInputStream input(std::move(stream), name);
-        return list_parts(Imf::MultiPartInputFile(input, 0));
+        std::vector<PicturePart> parts = list_parts(Imf::MultiPartInputFile(input, 0));
+        for (PicturePart& part : parts) {
+            part.name = make_printable(part.name);
+            for (Layer& layer : part.layers) {
+                layer.name = make_printable(layer.name);
+                for (std::string& channel : layer.channels) channel = make_printable(channel);
+            }
+        }
+        return parts;
     });
 }
 

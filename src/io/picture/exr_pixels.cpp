@@ -17,6 +17,7 @@
 #include "image/texel_layout.h"
 #include "io/picture/exr_threads.h"
 #include "io/picture/picture_error.h"
+#include "io/picture/picture_text.h"
 
 namespace relief {
 
@@ -58,9 +59,10 @@ class ExrLayerSource final : public PixelSource {
         for (const std::string& name : channels) {
             const Imf::Channel& channel = part_.header().channels()[name];
             if (channel.xSampling != 1 || channel.ySampling != 1)
-                throw Error(ErrorKind::bad_input,
-                            {fmt::format("has fewer samples of channel '{}' than pixels", name),
-                             parts_->name_, "save it with all channels at full resolution"});
+                throw Error(
+                    ErrorKind::bad_input,
+                    {fmt::format("has fewer samples of channel '{}' than pixels", make_printable(name)),
+                     parts_->name_, "save it with all channels at full resolution"});
             is_half &= channel.type == Imf::HALF;
         }
         header_ = make_header(part_.header(), std::move(channels), is_half);

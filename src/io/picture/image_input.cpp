@@ -18,6 +18,7 @@
 #include "io/picture/hdr_source.h"
 #include "io/picture/jpeg_source.h"
 #include "io/picture/picture_library.h"
+#include "io/picture/picture_text.h"
 #include "io/picture/png_header.h"
 #include "io/picture/png_source.h"
 #include "io/picture/tiff_header.h"
@@ -117,7 +118,7 @@ void check_attributes(std::istream& stream, const std::string& name, uint64_t fi
     if (const std::optional<std::string> attribute = find_missized_exr_attribute(stream, file_bytes))
         fail(name,
              fmt::format("is damaged: attribute '{}' is longer than the file, or not as long as its type",
-                         *attribute),
+                         make_printable(*attribute)),
              kDamagedPictureHint);
     stream.clear();
     stream.seekg(0);
