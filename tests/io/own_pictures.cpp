@@ -11,6 +11,7 @@
 #include "io/picture/jpeg_source.h"
 #include "io/picture/picture_library.h"
 #include "io/picture/tiff_source.h"
+#include "io/source_values.h"
 #include "io/test_files.h"
 #include "relief/io.h"
 
@@ -18,7 +19,7 @@ namespace relief {
 
 namespace {
 
-constexpr int kWidth = 37, kHeight = 21;
+constexpr int kColumns = 37, kRows = 21;
 
 std::unique_ptr<PixelSource> open_own(const std::filesystem::path& file, PictureRemarks& remarks) {
     for (const auto& open : {open_hdr, open_tiff, open_jpeg})
@@ -28,21 +29,13 @@ std::unique_ptr<PixelSource> open_own(const std::filesystem::path& file, Picture
     return nullptr;
 }
 
-std::vector<float> read_all(PixelSource& source) {
-    const PixelHeader& header = source.header();
-    const size_t count = header.channels.size();
-    std::vector<float> values(size_t(header.width) * size_t(header.height) * count);
-    source.read_floats(int(count), count, values.data());
-    return values;
-}
-
 } // namespace
 
 class OwnPictures : public FileTest {
   protected:
     std::filesystem::path write_picture(const std::string& name, int channels, OIIO::TypeDesc type,
                                         const std::function<void(OIIO::ImageSpec&)>& change = {},
-                                        int width = kWidth, int height = kHeight) const {
+                                        int width = kColumns, int height = kRows) const {
         std::vector<float> values(size_t(width) * size_t(height) * size_t(channels));
         for (size_t k = 0; k < values.size(); ++k) values[k] = float((k * 31) % 101) / 100;
         const std::filesystem::path file = folder_ / name;

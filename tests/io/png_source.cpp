@@ -8,6 +8,7 @@
 
 #include "io/picture/picture_library.h"
 #include "io/picture/png_source.h"
+#include "io/source_values.h"
 #include "io/test_files.h"
 
 namespace relief {
@@ -15,14 +16,6 @@ namespace relief {
 using PngSources = FileTest;
 
 namespace {
-
-std::vector<float> read_all(PixelSource& source) {
-    const PixelHeader& header = source.header();
-    const size_t channels = header.channels.size();
-    std::vector<float> values(size_t(header.width) * size_t(header.height) * channels);
-    source.read_floats(int(channels), channels, values.data());
-    return values;
-}
 
 std::unique_ptr<PixelSource> open_file(const std::filesystem::path& file) {
     return open_png(std::make_unique<std::ifstream>(file, std::ios::binary), file.string());
