@@ -23,6 +23,13 @@ double get_seconds(const ScriptStep& step) {
     return wait ? wait->seconds : 0;
 }
 
+/// Whether a step needs the scene that is being read: until it is there, changes would be lost.
+bool needs_scene(const ScriptStep& step) {
+    if (std::holds_alternative<WaitStep>(step) || std::holds_alternative<QuitStep>(step)) return false;
+    const auto* const file = std::get_if<FileStep>(&step);
+    return !file || file->kind == FileStep::Kind::save || file->kind == FileStep::Kind::save_map;
+}
+
 } // namespace
 
 ScriptRunner::ScriptRunner(std::vector<ScriptLine> lines, std::string source, Workbench& workbench,
@@ -45,6 +52,7 @@ void ScriptRunner::step(double now) {
         host_.print(write_json(Value{{"first_picture_s", workbench_.time_of_first_picture()}}));
     }
     while (!is_done()) {
+        if (!has_started_ && needs_scene(lines_[next_].step) && workbench_.is_loading()) return;
         if (!std::exchange(has_started_, true)) {
             start_ = now;
             pictures_before_ = workbench_.render_state().picture_count;

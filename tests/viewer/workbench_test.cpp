@@ -4,6 +4,7 @@
 #include <ios>
 #include <iterator>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "relief/error.h"
 #include "relief/io.h"
 #include "viewer/event_script.h"
+#include "viewer/script_runner.h"
 #include "viewer/workbench_fixture.h"
 
 namespace relief::viewer {
@@ -31,6 +33,30 @@ TEST_F(WorkbenchTest, turned_changed_and_saved_it_renders_to_what_was_seen) {
     press_key('S');
     ASSERT_TRUE(std::filesystem::exists(folder_ / "scene-view.json")) << bench_->message();
     EXPECT_EQ(render_file("scene-view.json"), bench_->picture()->image.pixels);
+}
+
+TEST_F(WorkbenchTest, a_script_sets_values_before_the_first_picture) {
+    std::istringstream text("{\"set\": {\"spp\": 3, \"scale\": 2.5, \"strength\": 0.5, \"radius\": 9}}\n"
+                            "{\"wait\": \"done\"}\n{\"quit\": true}\n");
+    ViewSettings view;
+    ScriptRunner script(
+        read_script(text, "early.jsonl"), "early.jsonl", *bench_, view,
+        {[](const InputEvent&) {}, [](const std::filesystem::path&) {}, [](const std::string&) {}});
+    write_scene_files();
+    bench_->open({folder_ / "scene.json", {}, {}});
+    ASSERT_TRUE(bench_->is_loading());
+    script.step(0); // before the scene is there
+    double now = 0;
+    ASSERT_TRUE(reach([&] {
+        script.step(now += 0.01);
+        return script.is_done();
+    }));
+    EXPECT_EQ(bench_->settings().image.spp, 3);
+    EXPECT_EQ(bench_->brush().radius, 9);
+    const Scene& scene = bench_->document()->scene();
+    EXPECT_EQ(scene.displacements[0].scale.x, 2.5f);
+    ASSERT_TRUE(scene.environment);
+    EXPECT_EQ(scene.environment->strength, 0.5f);
 }
 
 TEST_F(WorkbenchTest, a_stroke_is_seen_undone_made_again_and_saved) {
