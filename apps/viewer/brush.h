@@ -1,4 +1,4 @@
-// Brushes: how a place of a map changes under one dab.
+// Brushes, and rectangles of texels.
 #pragma once
 
 #include "relief/scene.h"
@@ -20,18 +20,5 @@ struct TexelBox {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     bool is_empty() const { return x0 >= x1 || y0 >= y1; }
 };
-
-/// An ellipse of texels that is a disc in the picture.
-struct Dab {
-    Vec2f centre{};                  ///< texels, from the top left corner of the map
-    Vec2f pixels_right, pixels_down; ///< pixels a texel to the right and downwards: columns of a matrix
-    float radius = 1;                ///< pixels
-};
-
-/// Texels that the dab may reach, also beyond the map.
-TexelBox find_reach(const Dab& dab);
-
-/// 1 in the middle of the dab, 0 outside, without a kink.
-float find_weight(const Dab& dab, float x, float y);
 
 } // namespace relief::viewer

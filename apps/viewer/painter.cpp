@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <variant>
 
@@ -20,61 +21,39 @@ constexpr float kSpacing = 0.25f;
 
 Vec3f blend(const Vec3f& a, const Vec3f& b, float share) { return a + (b - a) * share; }
 
-TexelBox clip(const TexelBox& box, const Texture& texture) {
-    return {std::max(box.x0, 0), std::max(box.y0, 0), std::min(box.x1, int(texture.width)),
-            std::min(box.y1, int(texture.height))};
-}
-
 /// Calls `change(value, weight)` for each texel of a piece that the dab reaches.
-template <class Change>
-void change_texels(const TexelBox& box, const Dab& dab, Texture& texture, const Change& change) {
-    for (int y = box.y0; y < box.y1; ++y)
-        for (int x = box.x0; x < box.x1; ++x) {
-            const float weight = find_weight(dab, float(x) + 0.5f, float(y) + 0.5f);
+template <class Change> void change_texels(const DabPiece& piece, Texture& texture, const Change& change) {
+    for (int y = piece.box.y0; y < piece.box.y1; ++y)
+        for (int x = piece.box.x0; x < piece.box.x1; ++x) {
+            const float weight = piece.weight(x, y);
             if (weight <= 0) continue;
             const Vec3f value = read_texel(texture, uint32_t(x), uint32_t(y));
             write_texel(texture, uint32_t(x), uint32_t(y), change(value, weight));
         }
 }
 
-} // namespace
-
-std::optional<Dab> Painter::make_dab(const Texture& texture, const SurfacePoint& point) {
-    const float width = float(texture.width), height = float(texture.height);
-    const float down = map().flip_v ? 1.0f : -1.0f; // rows along v
-    Dab dab;
-    const float row = map().flip_v ? point.uv.y : 1 - point.uv.y;
-    dab.centre = {(point.uv.x - std::floor(point.uv.x)) * width, (row - std::floor(row)) * height};
-    dab.radius = brush_.radius;
-    if (!point.uv_right || !point.uv_down) {
-        if (!last_dab_) return std::nullopt;
-        dab.pixels_right = last_dab_->pixels_right, dab.pixels_down = last_dab_->pixels_down;
-        return dab;
-    }
-    // Texels a pixel, then its inverse.
-    const Vec2f right{point.uv_right->x * width, point.uv_right->y * down * height};
-    const Vec2f below{point.uv_down->x * width, point.uv_down->y * down * height};
-    const float determinant = right.x * below.y - right.y * below.x;
-    if (!(std::fabs(determinant) > 1e-9f)) return std::nullopt;
-    dab.pixels_right = {below.y / determinant, -right.y / determinant};
-    dab.pixels_down = {-below.x / determinant, right.x / determinant};
-    last_dab_ = dab;
-    return dab;
+/// Texels from the middle of a dab to its edge, as if it were round.
+float find_radius(const std::vector<DabPiece>& pieces) {
+    size_t count = 0;
+    for (const DabPiece& piece : pieces)
+        count += size_t(std::ranges::count_if(piece.weights, [](float weight) { return weight > 0; }));
+    return std::sqrt(float(count) / std::numbers::pi_v<float>);
 }
 
-/// Those of a map that repeats go on at its other side.
-std::vector<Painter::Piece> Painter::find_pieces(const Texture& texture, const Dab& dab) const {
-    const int most = map().wrap == WrapMode::repeat && !map().is_udim ? 1 : 0;
-    std::vector<Piece> pieces;
-    for (int row = -most; row <= most; ++row)
-        for (int column = -most; column <= most; ++column) {
-            Dab shifted = dab;
-            shifted.centre.x += float(column * int(texture.width));
-            shifted.centre.y += float(row * int(texture.height));
-            const TexelBox box = clip(find_reach(shifted), texture);
-            if (!box.is_empty()) pieces.push_back({box, shifted, {}});
-        }
-    return pieces;
+/// Mean of the texels at (x, y) and `reach` around it.
+Vec3f average(const Texture& texture, int x, int y, int reach) {
+    Vec3f sum{};
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+            sum = sum + read_texel(texture, uint32_t(std::clamp(x + dx * reach, 0, int(texture.width) - 1)),
+                                   uint32_t(std::clamp(y + dy * reach, 0, int(texture.height) - 1)));
+    return sum * (1.0f / 9);
+}
+
+} // namespace
+
+Texture& Painter::paint(const DabPiece& piece) {
+    return document_.paint_tile(object().displacement, piece.udim);
 }
 
 Vec3f Painter::find_step(const Vec3f& shift_world, const SurfacePoint& point, int udim) {
@@ -97,60 +76,59 @@ Vec3f Painter::find_step(const Vec3f& shift_world, const SurfacePoint& point, in
                                                      row - std::floor(row)));
 }
 
-void Painter::smooth(const Piece& piece, Texture& texture) const {
-    const Vec2f &a = piece.dab.pixels_right, &b = piece.dab.pixels_down;
-    const float texels = piece.dab.radius / std::sqrt(std::fabs(a.x * b.y - a.y * b.x));
-    const int reach = std::max(1, int(texels / 12));
-    const TexelBox& box = piece.box;
-    const TexelBox around = clip({box.x0 - reach, box.y0 - reach, box.x1 + reach, box.y1 + reach}, texture);
-    const Texture before = copy_texels(texture, around);
-    const auto read = [&](int x, int y) {
-        return read_texel(before, uint32_t(std::clamp(x, around.x0, around.x1 - 1) - around.x0),
-                          uint32_t(std::clamp(y, around.y0, around.y1 - 1) - around.y0));
-    };
+void Painter::smooth(const std::vector<DabPiece>& pieces) {
+    const int reach = std::max(1, int(find_radius(pieces) / 12));
+    std::vector<std::vector<Vec3f>> means; // of all pieces, before any is changed
+    for (const DabPiece& piece : pieces) {
+        const Texture& texture = paint(piece);
+        std::vector<Vec3f>& own = means.emplace_back();
+        for (int y = piece.box.y0; y < piece.box.y1; ++y)
+            for (int x = piece.box.x0; x < piece.box.x1; ++x)
+                own.push_back(piece.weight(x, y) > 0 ? average(texture, x, y, reach) : Vec3f{});
+    }
     const float strength = std::fabs(brush_.strength);
-    for (int y = box.y0; y < box.y1; ++y)
-        for (int x = box.x0; x < box.x1; ++x) {
-            const float weight = find_weight(piece.dab, float(x) + 0.5f, float(y) + 0.5f);
-            if (weight <= 0) continue;
-            Vec3f sum{};
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx) sum = sum + read(x + dx * reach, y + dy * reach);
-            write_texel(texture, uint32_t(x), uint32_t(y),
-                        blend(read(x, y), sum * (1.0f / 9), weight * strength));
-        }
+    for (size_t k = 0; k < pieces.size(); ++k) {
+        size_t next = 0;
+        Texture& texture = paint(pieces[k]);
+        for (int y = pieces[k].box.y0; y < pieces[k].box.y1; ++y)
+            for (int x = pieces[k].box.x0; x < pieces[k].box.x1; ++x) {
+                const Vec3f mean = means[k][next++];
+                const float weight = pieces[k].weight(x, y);
+                if (weight <= 0) continue;
+                const Vec3f value = read_texel(texture, uint32_t(x), uint32_t(y));
+                write_texel(texture, uint32_t(x), uint32_t(y), blend(value, mean, weight * strength));
+            }
+    }
 }
 
-void Painter::apply(const Piece& piece, const SurfacePoint& point, int udim, Texture& texture) {
+void Painter::apply(const std::vector<DabPiece>& pieces, const SurfacePoint& point) {
     const Displacement& displacement = map();
-    if (brush_.kind == BrushKind::smooth) return smooth(piece, texture);
+    if (brush_.kind == BrushKind::smooth) return smooth(pieces);
     if (brush_.kind == BrushKind::erase) {
         const bool is_height = displacement.type == DisplacementType::height;
-        change_texels(piece.box, piece.dab, texture, [&](const Vec3f& value, float weight) {
-            const Vec3f zero =
-                is_height ? Vec3f{displacement.midlevel.x, value.y, value.z} : displacement.midlevel;
-            return blend(value, zero, weight * std::fabs(brush_.strength));
-        });
+        for (const DabPiece& piece : pieces)
+            change_texels(piece, paint(piece), [&](const Vec3f& value, float weight) {
+                const Vec3f zero =
+                    is_height ? Vec3f{displacement.midlevel.x, value.y, value.z} : displacement.midlevel;
+                return blend(value, zero, weight * std::fabs(brush_.strength));
+            });
         return;
     }
     const float height = brush_.strength * kSpacing * brush_.radius * point.pixel_size;
-    const Vec3f step = find_step(point.normal * height, point, udim);
-    change_texels(piece.box, piece.dab, texture,
-                  [&](const Vec3f& value, float weight) { return value + step * weight; });
+    const Vec3f step = find_step(point.normal * height, point, find_udim(document_.scene(), point));
+    for (const DabPiece& piece : pieces)
+        change_texels(piece, paint(piece),
+                      [&](const Vec3f& value, float weight) { return value + step * weight; });
 }
 
 void Painter::dab_at(const ShownPicture& picture, float x, float y) {
     const std::optional<SurfacePoint> point = find_surface_point(picture, x, y);
     if (!point || point->object != object_) return;
-    const TilePlace place{object().displacement, find_udim(document_.scene(), *point)};
-    Texture& texture = document_.paint_tile(place.displacement, place.udim);
-    const std::optional<Dab> dab = make_dab(texture, *point);
-    if (!dab) return;
-    for (const Piece& piece : find_pieces(texture, *dab)) {
-        history_.keep(place, texture, piece.box);
-        apply(piece, *point, place.udim, texture);
-        note_change(place, piece.box);
-    }
+    const std::vector<DabPiece> pieces = find_dab(document_.scene(), picture, *point, brush_.radius);
+    for (const DabPiece& piece : pieces)
+        history_.keep({object().displacement, piece.udim}, paint(piece), piece.box);
+    apply(pieces, *point);
+    for (const DabPiece& piece : pieces) note_change({object().displacement, piece.udim}, piece.box);
 }
 
 /// Dabs lie close together: those that overlap are one edit.
@@ -185,7 +163,6 @@ std::vector<MapEdit> Painter::begin(const Brush& brush, const ShownPicture& pict
     brush_ = brush;
     object_ = point->object;
     last_ = {x, y};
-    last_dab_.reset();
     history_.begin();
     if (brush.kind != BrushKind::grab) {
         dab_at(picture, x, y);
@@ -193,13 +170,10 @@ std::vector<MapEdit> Painter::begin(const Brush& brush, const ShownPicture& pict
     }
     start_ = point;
     start_udim_ = find_udim(scene, *point);
-    const TilePlace place{object().displacement, start_udim_};
-    Texture& texture = document_.paint_tile(place.displacement, place.udim);
-    const std::optional<Dab> dab = make_dab(texture, *point);
-    grabbed_ = dab ? find_pieces(texture, *dab) : std::vector<Piece>();
-    for (Piece& piece : grabbed_) {
-        history_.keep(place, texture, piece.box);
-        piece.before = copy_texels(texture, piece.box);
+    grabbed_ = find_dab(scene, picture, *point, brush_.radius);
+    for (const DabPiece& piece : grabbed_) {
+        history_.keep({object().displacement, piece.udim}, paint(piece), piece.box);
+        before_grab_.push_back(copy_texels(paint(piece), piece.box));
     }
     return {};
 }
@@ -209,13 +183,13 @@ std::vector<MapEdit> Painter::grab(const ShownPicture& picture, float x, float y
     const Vec3f shift = camera.right() * ((x - last_.x) * start_->pixel_size) +
                         camera.upward() * ((last_.y - y) * start_->pixel_size);
     const Vec3f step = find_step(shift, *start_, start_udim_);
-    const TilePlace place{object().displacement, start_udim_};
-    Texture& texture = document_.paint_tile(place.displacement, place.udim);
-    for (const Piece& piece : grabbed_) paste_texels(piece.before, piece.box, texture);
-    for (const Piece& piece : grabbed_)
-        change_texels(piece.box, piece.dab, texture,
+    for (size_t k = 0; k < grabbed_.size(); ++k) {
+        const DabPiece& piece = grabbed_[k];
+        paste_texels(before_grab_[k], piece.box, paint(piece));
+        change_texels(piece, paint(piece),
                       [&](const Vec3f& value, float weight) { return value + step * weight; });
-    for (const Piece& piece : grabbed_) note_change(place, piece.box);
+        note_change({object().displacement, piece.udim}, piece.box);
+    }
     return take_edits();
 }
 
@@ -234,7 +208,7 @@ std::vector<MapEdit> Painter::move(const ShownPicture& picture, float x, float y
 void Painter::end() {
     history_.end();
     object_ = kNoIndex;
-    grabbed_.clear();
+    grabbed_.clear(), before_grab_.clear();
     start_.reset();
 }
 

@@ -11,6 +11,7 @@
 
 #include "relief/session.h"
 #include "viewer/brush.h"
+#include "viewer/dab.h"
 #include "viewer/document.h"
 #include "viewer/stroke_history.h"
 #include "viewer/surface_point.h"
@@ -50,22 +51,14 @@ class Painter {
     }
 
   private:
-    /// A rectangle of the tile, the dab there, and its texels before a grab.
-    struct Piece {
-        TexelBox box;
-        Dab dab;
-        Texture before;
-    };
-
     const Object& object() const { return document_.scene().objects[object_]; }
     const Displacement& map() const { return document_.scene().displacements[object().displacement]; }
     void dab_at(const ShownPicture& picture, float x, float y);
-    std::optional<Dab> make_dab(const Texture& texture, const SurfacePoint& point);
-    std::vector<Piece> find_pieces(const Texture& texture, const Dab& dab) const;
+    Texture& paint(const DabPiece& piece);
     /// What a shift of the surface in the world adds to values of the map.
     Vec3f find_step(const Vec3f& shift_world, const SurfacePoint& point, int udim);
-    void apply(const Piece& piece, const SurfacePoint& point, int udim, Texture& texture);
-    void smooth(const Piece& piece, Texture& texture) const;
+    void apply(const std::vector<DabPiece>& pieces, const SurfacePoint& point);
+    void smooth(const std::vector<DabPiece>& pieces);
     std::vector<MapEdit> grab(const ShownPicture& picture, float x, float y);
     SceneValue exchange(const SceneValue& value);
     void note_change(const TilePlace& place, const TexelBox& box);
@@ -80,8 +73,8 @@ class Painter {
     Vec2f last_{};               ///< pixels of the whole picture
     std::optional<SurfacePoint> start_;
     int start_udim_ = 1001;
-    std::vector<Piece> grabbed_;
-    std::optional<Dab> last_dab_;
+    std::vector<DabPiece> grabbed_;
+    std::vector<Texture> before_grab_;                    ///< texels of each piece
     std::vector<std::pair<TilePlace, TexelBox>> changed_; ///< since the last edits
 };
 

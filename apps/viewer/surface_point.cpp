@@ -1,5 +1,6 @@
 #include "viewer/surface_point.h"
 #include "common/vectors.h"
+#include "viewer/picture_layers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,79 +13,8 @@ using namespace vectors;
 
 namespace {
 
-/// Pixels to those that derivatives are taken from: samples lie anywhere within their pixels. Of small
-/// pictures the second, as far as the first lies beyond a seam.
-constexpr int kReaches[] = {3, 1};
-/// Two pixels of which uv differs by more lie on two sides of a seam.
-constexpr float kSeam = 0.25f;
 /// Lines begin there, in distances of the camera's target.
 constexpr float kNearPlane = 1e-3f;
-
-/// Channels of the layers, all of which are there.
-class Layers {
-  public:
-    explicit Layers(const Image& image)
-        : image_(image),
-          depth_(find("depth.Z")),
-          normal_(find("N.X")),
-          position_(find("P.X")),
-          uv_(find("uv.X")),
-          id_(find("id.I")) {}
-
-    bool is_complete() const { return is_complete_; }
-    bool is_inside(int x, int y) const { return x >= 0 && y >= 0 && x < image_.width && y < image_.height; }
-    bool has_surface(int x, int y) const { return is_inside(x, y) && std::isfinite(at(x, y, depth_)); }
-    float id(int x, int y) const { return at(x, y, id_); }
-    Vec3f position(int x, int y) const { return vector(x, y, position_); }
-    Vec3f normal(int x, int y) const { return vector(x, y, normal_); }
-    Vec2f uv(int x, int y) const { return {at(x, y, uv_), at(x, y, uv_ + 1)}; }
-
-  private:
-    size_t find(const char* name) {
-        const auto channel = image_.find_channel(name);
-        is_complete_ &= channel.has_value();
-        return channel.value_or(0);
-    }
-    float at(int x, int y, size_t channel) const {
-        return image_
-            .pixels[(size_t(y) * size_t(image_.width) + size_t(x)) * image_.channels.size() + channel];
-    }
-    Vec3f vector(int x, int y, size_t channel) const {
-        return {at(x, y, channel), at(x, y, channel + 1), at(x, y, channel + 2)};
-    }
-
-    const Image& image_;
-    bool is_complete_ = true;
-    size_t depth_, normal_, position_, uv_, id_;
-};
-
-/// Through a pixel along (1, 0) or (0, 1); `scale`: pixels of the whole picture a pixel.
-struct PixelLine {
-    int x = 0, y = 0, right = 0, down = 0;
-    float scale = 1;
-};
-
-/// Between the pixels so far before and behind.
-std::optional<Vec2f> find_change(const Layers& layers, const PixelLine& line, int reach) {
-    const int x = line.x, y = line.y, dx = reach * line.right, dy = reach * line.down;
-    const auto is_same = [&](int px, int py) {
-        return layers.has_surface(px, py) && layers.id(px, py) == layers.id(x, y);
-    };
-    const bool has_next = is_same(x + dx, y + dy), has_last = is_same(x - dx, y - dy);
-    if (!has_next && !has_last) return std::nullopt;
-    const Vec2f a = has_last ? layers.uv(x - dx, y - dy) : layers.uv(x, y);
-    const Vec2f b = has_next ? layers.uv(x + dx, y + dy) : layers.uv(x, y);
-    const Vec2f change{b.x - a.x, b.y - a.y};
-    if (std::fabs(change.x) > kSeam || std::fabs(change.y) > kSeam) return std::nullopt;
-    const float pixels = float((dx + dy) * (int(has_next) + int(has_last))) * line.scale;
-    return Vec2f{change.x / pixels, change.y / pixels};
-}
-
-std::optional<Vec2f> find_derivative(const Layers& layers, const PixelLine& line) {
-    for (const int reach : kReaches)
-        if (const auto change = find_change(layers, line, reach)) return change;
-    return std::nullopt;
-}
 
 /// Whether a triangle of the uv plane holds a point.
 bool holds(const Vec2f& a, const Vec2f& b, const Vec2f& c, const Vec2f& p) {
@@ -98,7 +28,7 @@ bool holds(const Vec2f& a, const Vec2f& b, const Vec2f& c, const Vec2f& p) {
 } // namespace
 
 std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, float x, float y) {
-    const Layers layers(picture.image);
+    const PictureLayers layers(picture.image);
     if (!layers.is_complete() || picture.full_width < 1 || picture.full_height < 1) return std::nullopt;
     const float scale_x = float(picture.full_width) / float(picture.image.width);
     const float scale_y = float(picture.full_height) / float(picture.image.height);
@@ -113,8 +43,7 @@ std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, floa
     const float distance = dot(point.position - picture.camera.from, forward);
     point.pixel_size = 2 * distance * std::tan(picture.camera.fov_degrees * std::numbers::pi_v<float> / 360) /
                        float(picture.full_height);
-    point.uv_right = find_derivative(layers, {px, py, 1, 0, scale_x});
-    point.uv_down = find_derivative(layers, {px, py, 0, 1, scale_y});
+    point.distance = distance;
     return point;
 }
 

@@ -18,9 +18,7 @@ struct SurfacePoint {
     Vec3f position{}, normal{}; ///< world
     Vec2f uv{};                 ///< within its tile
     float pixel_size = 0;       ///< scene units a pixel of the whole picture, at that distance
-    /// Change of uv a pixel of the whole picture to the right and downwards; nothing where a neighbour lies
-    /// elsewhere.
-    std::optional<Vec2f> uv_right, uv_down;
+    float distance = 0;         ///< from the camera, along its axis
 };
 
 /// (x, y) in pixels of the whole picture. Nothing where the pixel shows no surface or lies outside.
