@@ -158,7 +158,8 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
         std::find_if(inspection.findings.begin(), inspection.findings.end(), stands_in_the_way);
     if (found != inspection.findings.end())
         throw Error(ErrorKind::bad_input, {found->text, options.file, "no check picture can be made"});
-    const Scene scene = mesh ? make_mesh_scene(std::move(*mesh), &meant) : make_map_scene(meant);
+    // As a render reads it, not as it looks like.
+    const Scene scene = mesh ? make_mesh_scene(std::move(*mesh), &map) : make_map_scene(map);
     write_check_picture(scene, make_check_settings(), options, progress);
     return inspection;
 }

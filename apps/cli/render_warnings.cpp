@@ -1,5 +1,6 @@
 #include "render_warnings.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <mutex>
 #include <string_view>
@@ -18,21 +19,24 @@ namespace relief::cli {
 
 namespace {
 
-/// `section`.axes = t,n,b becomes "axes": "t,n,b", as in a scene file.
+/// `section`.axes = t,n,b becomes "axes": "t,n,b", as in a scene file; `section`.axes alone becomes "axes".
 std::string name_keys_of(std::string_view section, std::string text) {
     constexpr std::string_view kEquals = " = ";
     for (size_t at = 0; (at = text.find(section, at)) != std::string::npos;) {
-        const size_t equals = text.find(kEquals, at);
-        if (equals == std::string::npos) break;
-        const size_t value = equals + kEquals.size();
-        size_t end = value;
-        while (end < text.size() && text[end] != ' ' && text[end] != ';') ++end;
-        if (end > value && text[end - 1] == ',') --end;
-        const std::string key = text.substr(at + section.size(), equals - at - section.size());
-        const std::string word = text.substr(value, end - value);
-        const bool is_number = word.find_first_not_of("0123456789.-+e") == std::string::npos;
-        const std::string written =
-            is_number ? fmt::format("\"{}\": {}", key, word) : fmt::format("\"{}\": \"{}\"", key, word);
+        const size_t begin = at + section.size();
+        const size_t key_end =
+            std::min(text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", begin), text.size());
+        const std::string key = text.substr(begin, key_end - begin);
+        size_t end = key_end;
+        std::string written = fmt::format("\"{}\"", key);
+        if (text.compare(key_end, kEquals.size(), kEquals) == 0) {
+            const size_t value = key_end + kEquals.size();
+            end = std::min(text.find_first_of(" ;", value), text.size());
+            if (end > value && text[end - 1] == ',') --end;
+            const std::string word = text.substr(value, end - value);
+            const bool is_number = word.find_first_not_of("0123456789.-+e") == std::string::npos;
+            written += is_number ? fmt::format(": {}", word) : fmt::format(": \"{}\"", word);
+        }
         text.replace(at, end - at, written);
         at += written.size();
     }

@@ -36,6 +36,9 @@ _REMEDIES = [
     (KEY + r"type = height", lambda m: "use the node Displacement instead of Vector Displacement"),
     (KEY + r"encoding = (\w+)", lambda m: _describe_encoding(m[1])),
     (KEY + r"axes = ([-+\w]+,[-+\w]+,[-+\w]+)(?:, as presets [\w-]+(?:, [\w-]+)*)?", lambda m: _describe_axes(m[1])),
+    (KEY + r"axes to an order with ([RGB]) along (-?)n: the values do not show which of the other two is along t(?: \([^)]*\))?",
+     lambda m: f"put Separate Color and Combine Color between the image and the displacement node: Green from {'minus ' if m[2] else ''}"
+     f"{COLORS['RGB'.index(m[1])]}, Red and Blue from the other two"),
     (r"set displacement\.scale", lambda m: "set Scale of the displacement node"),
     (r"name all tiles as <UDIM>", lambda m: "set Source of the image to UDIM Tiles"),
     (r",? or inspect the map", lambda m: ""),

@@ -344,6 +344,10 @@ class Remedies(BlenderTest):
                 ("y; write displacement.space = object, or inspect the map",
                  "y; set Space of the node Vector Displacement to Object Space"),
                 ("or write displacement.wrap = repeat", "or set Extension of the node Image Texture to Repeat"),
+                ("set displacement.axes to an order with B along n: the values do not show which of the other two is along t "
+                 "(presets blender-brush, genvdm, 3dcoat write t,b,n)",
+                 "put Separate Color and Combine Color between the image and the displacement node: Green from Blue, Red and "
+                 "Blue from the other two"),
                 ("mesh 'a' is fine", "mesh 'a' is fine")):
             self.assertEqual(translate(given), wanted)
 

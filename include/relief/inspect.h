@@ -74,12 +74,13 @@ enum class MapMeaning { declared, unknown };
 Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* mesh = nullptr,
                        const ProgressFunction& on_progress = {});
 
-/// The same map with the most probable space, axes and midlevel; what cannot be determined is unchanged.
+/// The same map with the most probable space, axes and midlevel; what cannot be determined is unchanged. In
+/// tangent space the values do not show t from b: these two may be turned by quarters.
 Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
 
 /// What speaks against the assumptions about the maps of a scene (Displacement::assumed): warnings; and a
 /// note where the values of a map clearly speak against axes that were declared. Each finding names the
-/// setting that says it, "displacement.axes = t,n,b". At most 2^18 texels a map are looked at. That seams
+/// setting that mends it, "displacement.axes". At most 2^18 texels a map are looked at. That seams
 /// speak for object space is left to render(), which warns of it. The scene must be valid.
 std::vector<Finding> find_doubtful_assumptions(const Scene& scene);
 
@@ -90,8 +91,8 @@ std::vector<std::string> find_tile_warnings(const Scene& scene);
 /// Contact sheet of a scene seen by its camera, four pictures of `settings.image.width` x
 /// `settings.image.height` each: the base (with the displacement axes as red, green and blue arrows), the
 /// displaced surface, the displacement as colours (red, green, blue along t, b, n or x, y, z; grey is zero),
-/// and folds: where the surface faces away from its base, in red. Values are meant for a tone-mapped file.
-/// Throws as render().
+/// and folds: where the surface faces away from its base, in red. Captions say so. Values are meant for a
+/// tone-mapped file. Throws as render().
 Image make_check_picture(const Scene& scene, const RenderSettings& settings,
                          const ProgressFunction& on_progress = {});
 

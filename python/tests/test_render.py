@@ -178,7 +178,8 @@ class RenderTest(unittest.TestCase):
             relief.render(scene, spp=3, progress=lambda progress: 1 / progress.rays)
 
     def test_what_speaks_against_the_axes_of_a_map_is_a_warning(self):
-        heights = np.abs(scenes.make_waves()[:, :, ::-1])  # along t, as the values go, and not along n
+        heights = scenes.make_waves()[:, :, ::-1].copy()
+        heights[:, :, 0] = np.abs(heights[:, :, 0]) + 0.1  # along t, as the values go, and not along n
         for keys, words in (({}, "axes t,b,n are assumed"), ({"axes": "t,b,n"}, "note: .*axes t,b,n are declared")):
             scene = relief.Scene.from_mesh(scenes.make_plane(), relief.Displacement(heights, space="tangent", midlevel=0, **keys))
             warnings = relief.render(scene, size=(8, 8), spp=1).warnings

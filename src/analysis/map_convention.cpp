@@ -22,6 +22,8 @@ constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 constexpr double kClearRatio = 1.5; ///< by how much the best must be ahead of the next
 constexpr double kMostLead = 1e9;
 constexpr double kOneSided = 0.5; ///< least one-sidedness of a channel along the normal
+constexpr double kMostNext =
+    0.75; ///< most one-sidedness of the next channel, of that of the channel along the normal
 
 /// The channel along the normal: sculpts rise more than they slide, so its mean is the most one-sided.
 struct NormalChannel {
@@ -37,12 +39,17 @@ NormalChannel find_normal_channel(const MapStatistics& statistics, const Vec3f& 
         strength[c] = std::fabs(strength[c] * (statistics.channels[c].mean - statistics.midlevel[c]));
     NormalChannel best;
     best.channel = size_t(std::max_element(strength.begin(), strength.end()) - strength.begin());
-    const double next = std::max(strength[(best.channel + 1) % 3], strength[(best.channel + 2) % 3]);
+    const size_t a = (best.channel + 1) % 3, b = (best.channel + 2) % 3;
+    const size_t next_channel = strength[a] > strength[b] ? a : b;
+    const double next = strength[next_channel];
     const double one_sided = statistics.channels[best.channel].one_sided;
+    // A hook leans to one side as it rises, and may lean further than it rises.
+    const bool is_alone =
+        std::fabs(statistics.channels[next_channel].one_sided) < kMostNext * std::fabs(one_sided);
     best.sign = one_sided < 0 ? -1 : 1;
     best.ratio = next > 0 ? strength[best.channel] / next : kMostLead;
-    best.is_clear =
-        strength[best.channel] > 0 && best.ratio >= kClearRatio && std::fabs(one_sided) >= kOneSided;
+    best.is_clear = strength[best.channel] > 0 && best.ratio >= kClearRatio &&
+                    std::fabs(one_sided) >= kOneSided && is_alone;
     return best;
 }
 
@@ -59,23 +66,58 @@ Vec3f round_midlevel(const MapStatistics& statistics) {
     return {float(statistics.midlevel[0]), float(statistics.midlevel[1]), float(statistics.midlevel[2])};
 }
 
-/// Along the plane a sculpt spreads where it rises: the right one of eight orders overhangs most.
-void guess_order_on_plane(const Displacement& map, const NormalChannel& normal, MapConvention& result) {
-    constexpr double kAhead = 1.15;
-    std::array<PlaneFolds, 8> folds;
-    for (int choice = 0; choice < 8; ++choice)
-        folds[size_t(choice)] = measure_folds(map, make_axes(normal, choice));
-    std::array<size_t, 8> order{0, 1, 2, 3, 4, 5, 6, 7};
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return folds[a].area > folds[b].area; });
-    const PlaneFolds &best = folds[order[0]], &next = folds[order[1]];
-    double other_share = 0;
-    for (size_t k = 1; k < order.size(); ++k) other_share = std::max(other_share, folds[order[k]].share);
-    result.is_order_clear = best.share > kAhead * other_share && best.area > next.area;
-    if (!result.is_order_clear) return;
-    result.axes.value = make_axes(normal, int(order[0]));
-    result.axes.reason += fmt::format(
-        "; laid like this it overhangs in {:.1f} % of the texels, {:.1f} x as much as in any other order",
-        100 * best.share, other_share > 0 ? std::min(best.share / other_share, 99.0) : 99.0);
+/// Whether the channels beside the normal go along t and b as in a map of the plane onto itself, or as in a
+/// mirror.
+bool is_mirrored_on_plane(const AxisMap& axes) {
+    const size_t third = size_t(std::find(axes.axis.begin(), axes.axis.end(), 2) - axes.axis.begin());
+    const size_t first = third == 0 ? 1 : 0, second = third == 2 ? 1 : 2;
+    return (axes.axis[first] == 1) != (axes.sign[first] * axes.sign[second] < 0);
+}
+
+/// What the surface does on a plane in the four orders that are turns of one another.
+struct HandFolds {
+    double share = 0, least_share = 1, area = 0; ///< most of the four, least of the four, most of the four
+};
+
+/// Of two hands this one is right: its surface overhangs clearly more, and has clearly more area. The other
+/// one folds in each of its orders: a sculpt that twists does not fold at all as it was meant, however it
+/// does otherwise. The numbers part 3000 generated maps without a mistake; tests repeat that for a hundred.
+bool is_clearly_right(const HandFolds& hand, const HandFolds& other) {
+    constexpr double kLeastShare = 0.03, kShareAhead = 1.3, kAreaAhead = 1.04, kEven = 0.5;
+    return hand.share > kLeastShare && hand.share > kShareAhead * other.share &&
+           hand.area > kAreaAhead * other.area && other.least_share > kEven * other.share;
+}
+
+/// Along the plane a sculpt overhangs in the hand that it was made in. Turns of t and b by quarters cannot be
+/// told: what spreads in one of them twists in the next, and sculpts do either.
+void guess_hand_on_plane(const Displacement& map, const NormalChannel& normal, MapConvention& result) {
+    std::array<HandFolds, 2> hands;
+    for (int choice = 0; choice < 8; ++choice) {
+        const AxisMap axes = make_axes(normal, choice);
+        const PlaneFolds folds = measure_folds(map, axes);
+        HandFolds& hand = hands[is_mirrored_on_plane(axes) ? 1 : 0];
+        hand.share = std::max(hand.share, folds.share), hand.area = std::max(hand.area, folds.area);
+        hand.least_share = std::min(hand.least_share, folds.share);
+    }
+    const size_t usual = is_mirrored_on_plane(result.axes.value) ? 1 : 0, other = 1 - usual;
+    const bool is_usual = is_clearly_right(hands[usual], hands[other]);
+    result.is_hand_clear = is_usual || is_clearly_right(hands[other], hands[usual]);
+    if (!result.is_hand_clear) return;
+    constexpr int kExchanged = 1;
+    if (!is_usual) result.axes.value = make_axes(normal, kExchanged);
+    const double share = hands[is_usual ? usual : other].share,
+                 mirrored = hands[is_usual ? other : usual].share;
+    const char *a = kChannelNames[normal.channel == 0 ? 1 : 0],
+               *b = kChannelNames[normal.channel == 2 ? 1 : 2];
+    result.axes.reason +=
+        is_usual
+            ? fmt::format(
+                  "; {} and {} have the hand of t and b: the surface overhangs in {:.1f} % of the texels, "
+                  "mirrored in {:.1f} %",
+                  a, b, 100 * share, 100 * mirrored)
+            : fmt::format("; {} and {} look exchanged, or one of them negated: so the surface overhangs in "
+                          "{:.1f} % of the texels, else in {:.1f} %",
+                          a, b, 100 * share, 100 * mirrored);
 }
 
 /// The channel along the normal, or along z.
@@ -97,7 +139,7 @@ void guess_tangent_axes(const Displacement& map, const MapStatistics& statistics
     result.axes.reason = fmt::format(
         "{} is along the normal{}: its mean is {:.1f} x as far from the midlevel as that of the next channel",
         kChannelNames[normal.channel], normal.sign < 0 ? ", backwards" : "", std::min(normal.ratio, 99.0));
-    if (!map.is_udim && statistics.bad_count == 0) guess_order_on_plane(map, normal, result);
+    if (!map.is_udim && statistics.bad_count == 0) guess_hand_on_plane(map, normal, result);
 }
 
 /// The seams of a mesh close in tangent space for the right order only. They tell which channel is along the
@@ -126,7 +168,7 @@ void refine_by_seams(const std::vector<SeamSample>& seams, const MapStatistics& 
                                "with another channel to {:.0f} %",
                                kChannelNames[channel], 100 * gaps[channel], 100 * next)};
     result.axes_lead = gaps[channel] > 0 ? next / gaps[channel] : kMostLead;
-    result.is_order_clear = false;
+    result.is_hand_clear = false;
 }
 
 /// Object space: the order under which the surface moves most along its normals.
@@ -323,7 +365,12 @@ MapConvention guess_convention(const Displacement& map, const MapStatistics& sta
 
 bool agrees_on_axes(const MapConvention& convention, const Displacement& map) {
     const AxisMap& axes = convention.axes.value;
-    return convention.is_order_clear ? axes == map.axes : find_third_axis(axes) == find_third_axis(map.axes);
+    if (convention.is_order_clear) return axes == map.axes;
+    const ptrdiff_t third = find_third_axis(axes);
+    if (third != find_third_axis(map.axes)) return false;
+    if (!convention.is_hand_clear) return true;
+    return axes.sign[size_t(third)] == map.axes.sign[size_t(third)] &&
+           is_mirrored_on_plane(axes) == is_mirrored_on_plane(map.axes);
 }
 
 bool contradicts_axes(const MapConvention& convention, const Displacement& map) {

@@ -21,7 +21,9 @@ struct MapConvention {
     Guess<DisplacementSpace> space;
     Guess<AxisMap> axes;            ///< clear where the axis along the normal is
     bool is_space_by_seams = false; ///< the uv seams of the mesh speak for the space
-    bool is_order_clear = false;    ///< also which channels go along t and b, or x, y and z
+    bool is_order_clear = false;    ///< of object space: also which channels go along x, y and z
+    bool is_hand_clear =
+        false; ///< of tangent space: t and b are right, or turned by quarters, but not mirrored
     double axes_lead =
         0; ///< in tangent space: evidence for the channel along the normal over that for the next
 };

@@ -3,15 +3,20 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "base/progress.h"
 #include "cpu/cpu_engine.h"
 #include "formulas/camera.h"
 #include "inspect/picture_lines.h"
+#include "inspect/picture_text.h"
 #include "math/affine.h"
 #include "prepare/camera_frame.h"
 #include "prepare/validate_settings.h"
+#include "relief/convert.h"
 #include "relief/inspect.h"
 #include "surface/patch/patch_samples.h"
 
@@ -92,6 +97,7 @@ float shade(const Vec3f& normal, const Vec3f& direction) {
 
 struct PointColors {
     Vec3f axes = kPaper, folds = kPaper;
+    bool is_displaced = false, is_folded = false;
 };
 
 PointColors color_point(const PreparedScene& scene, const Ray& ray, const RayHit& hit, float longest) {
@@ -102,12 +108,14 @@ PointColors color_point(const PreparedScene& scene, const Ray& ray, const RayHit
     const float light = shade(hit.normal, ray.direction);
     colors.axes = colors.folds = Vec3f{0.5f, 0.5f, 0.5f} * light;
     if (!surface.has_displacement) return colors;
+    colors.is_displaced = true;
     const Place place = find_place(surface, hit.patch, hit.uv);
     const Vec3f half{0.5f, 0.5f, 0.5f};
     colors.axes = (half + place.displacement * (0.5f / longest)) * light;
     const Vec3f base_normal = transform_normal(instance.object_space.from_origin, place.base.frame.n);
     const float facing = dot(hit.normal, base_normal) * (instance.is_mirrored ? -1.0f : 1.0f);
-    if (facing < 0) colors.folds = Vec3f{0.9f, 0.08f, 0.05f} * light;
+    colors.is_folded = facing < 0;
+    if (colors.is_folded) colors.folds = Vec3f{0.9f, 0.08f, 0.05f} * light;
     return colors;
 }
 
@@ -143,6 +151,45 @@ void draw_frames(const PreparedScene& scene, const scalar::CameraFrame& camera,
     }
 }
 
+/// How the maps are read, of one; of several their number.
+std::string describe_reading(const Scene& scene) {
+    std::vector<const Displacement*> used;
+    for (const Object& object : scene.objects)
+        if (object.displacement != kNoIndex &&
+            std::ranges::find(used, &scene.displacements[object.displacement]) == used.end())
+            used.push_back(&scene.displacements[object.displacement]);
+    if (used.empty()) return "no displacement";
+    if (used.size() > 1) return fmt::format("{} maps", used.size());
+    const Displacement& map = *used.front();
+    const Vec3f& m = map.midlevel;
+    const std::string midlevel = m.x == m.y && m.y == m.z
+                                     ? fmt::format("{:.4g}", m.x)
+                                     : fmt::format("{:.4g}, {:.4g}, {:.4g}", m.x, m.y, m.z);
+    if (map.type == DisplacementType::height) return fmt::format("heights, midlevel {}", midlevel);
+    const char* space = map.space == DisplacementSpace::tangent  ? "tangent"
+                        : map.space == DisplacementSpace::object ? "object"
+                                                                 : "world";
+    return fmt::format("{} space, axes {}, midlevel {}", space, format_map_axes(map.axes, map.space),
+                       midlevel);
+}
+
+/// Above each of the four views. `folds`: share of the pixels of displaced surfaces whose surface faces away
+/// from its base.
+void draw_captions(const Scene& scene, const RenderSettings& settings, double folds, Image& sheet) {
+    const int width = settings.image.width, height = settings.image.height;
+    constexpr int kWideLetters = 53; ///< that a view has room for at two pixels each
+    const int scale = width >= 2 * kGlyphWidth * kWideLetters ? 2 : 1;
+    const bool is_flat = std::ranges::all_of(scene.displacements, [](const Displacement& map) {
+        return map.space == DisplacementSpace::tangent || map.type == DisplacementType::height;
+    });
+    const char* names = is_flat ? "red t, green b, blue n" : "red x, green y, blue z";
+    draw_text(sheet, {0, 0}, width, scale, fmt::format("base, axes as arrows: {}", names));
+    draw_text(sheet, {width, 0}, width, scale, "as rendered: " + describe_reading(scene));
+    draw_text(sheet, {0, height}, width, scale, fmt::format("displacement: {}, grey 0", names));
+    draw_text(sheet, {width, height}, width, scale,
+              fmt::format("red faces away from its base: {:.1f} %", 100 * folds));
+}
+
 } // namespace
 
 Image make_check_picture(const Scene& scene, const RenderSettings& settings,
@@ -164,13 +211,16 @@ Image make_check_picture(const Scene& scene, const RenderSettings& settings,
     std::vector<RayHit> hits(rays.size());
     make_cpu_engine(prepared, plain)->closest_hits(rays, hits, kVisibleToAll);
     const float longest = find_longest(*prepared, hits);
+    size_t displaced = 0, folded = 0;
     for (size_t k = 0; k < rays.size(); ++k) {
         const int x = int(k % size_t(plain.image.width)), y = int(k / size_t(plain.image.width));
         const PointColors colors = color_point(*prepared, rays[k], hits[k], longest);
+        displaced += colors.is_displaced, folded += colors.is_folded;
         set_pixel(sheet, x, plain.image.height + y, colors.axes);
         set_pixel(sheet, plain.image.width + x, plain.image.height + y, colors.folds);
     }
     draw_frames(*prepared, camera, plain, sheet);
+    draw_captions(scene, plain, displaced > 0 ? double(folded) / double(displaced) : 0, sheet);
     steps.add(1);
     return sheet;
 }

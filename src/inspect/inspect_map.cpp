@@ -104,7 +104,8 @@ std::string describe_looks(const MapStatistics& statistics, const MapConvention&
         if (space == DisplacementSpace::tangent) {
             const std::string presets = list_presets(convention.axes.value);
             if (!presets.empty()) text += " (presets " + presets + ")";
-            if (!convention.is_order_clear) text += "; t and b may be exchanged or turned";
+            text += convention.is_hand_clear ? "; t and b may be turned by quarters"
+                                             : "; t and b may be exchanged or turned";
         }
     }
     return text;

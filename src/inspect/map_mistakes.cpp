@@ -243,9 +243,17 @@ void find_misfits(const Displacement& map, const MapStatistics& statistics, cons
 }
 
 std::string advise_axes(const MapConvention& convention, DisplacementSpace space) {
-    const std::string presets = list_presets(convention.axes.value);
-    return fmt::format("write displacement.axes = {}{}", format_map_axes(convention.axes.value, space),
-                       presets.empty() ? "" : ", as presets " + presets);
+    const std::string axes = format_map_axes(convention.axes.value, space);
+    if (convention.is_order_clear) return fmt::format("write displacement.axes = {}", axes);
+    // No order to write: the values do not tell t from b.
+    const AxisMap& value = convention.axes.value;
+    const size_t third = size_t(std::find(value.axis.begin(), value.axis.end(), 2) - value.axis.begin());
+    const std::string presets = list_presets(value);
+    return fmt::format(
+        "set displacement.axes to an order with {} along {}n: the values do not show which of the other "
+        "two is along t{}",
+        kChannelNames[third], value.sign[third] < 0 ? "-" : "",
+        presets.empty() ? "" : fmt::format(" (presets {} write {})", presets, axes));
 }
 
 void note_convention(const Displacement& map, MapMeaning meaning, const MapConvention& convention,

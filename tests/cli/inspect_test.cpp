@@ -123,6 +123,18 @@ TEST_F(Inspect, a_check_picture_shows_base_displaced_axes_and_folds) {
     };
     EXPECT_GT(differ(0, 0, 640, 0), 2000) << "the bump is in the second picture only";
     EXPECT_GT(differ(0, 480, 640, 480), 2000) << "colours are in the third only";
+    // Whatever the values look like, the surface is that of a render.
+    Image swapped = read_image(folder_ / "bump.exr");
+    for (int y = 0; y < swapped.height; ++y)
+        for (int x = 0; x < swapped.width; ++x) {
+            if (x < swapped.width / 2) swapped.at(x, y, 0) = -swapped.at(x, y, 0);
+            std::swap(swapped.at(x, y, 1), swapped.at(x, y, 2));
+        }
+    write_image(swapped, folder_ / "swapped.exr");
+    const CommandResult guessed = run({"inspect", "swapped.exr", "-o", "guessed.exr"});
+    EXPECT_TRUE(contains(guessed.output, "axes t,n,b")) << guessed.output;
+    ASSERT_EQ(run({"inspect", "swapped.exr", "--axes", "t,b,n", "-o", "declared.exr"}).exit_code, 0);
+    EXPECT_EQ(read_image(folder_ / "guessed.exr").pixels, read_image(folder_ / "declared.exr").pixels);
     const CommandResult checked = run({"inspect", "plane.obj", "-o", "plane.png"});
     EXPECT_EQ(checked.exit_code, 0);
     EXPECT_NE(checked.errors.find("wrote plane.png"), std::string::npos) << checked.errors;

@@ -11,10 +11,12 @@ class Warnings : public CommandTest {
   protected:
     void SetUp() override {
         CommandTest::SetUp();
-        // The bump with its normal in G, and with 0.5 for zero.
+        // The bump, which slides to both sides, with its normal in G; and with 0.5 for zero.
         Image swapped = read_image(folder_ / "bump.exr"), half = swapped;
         for (size_t k = 0; k < swapped.pixels.size(); k += 3) {
             std::swap(swapped.pixels[k + 1], swapped.pixels[k + 2]);
+            if (k / 3 % size_t(swapped.width) < size_t(swapped.width) / 2)
+                swapped.pixels[k] = -swapped.pixels[k];
             for (size_t c = k; c < k + 3; ++c) half.pixels[c] = 0.5f + 0.5f * half.pixels[c];
         }
         write_image(swapped, folder_ / "swapped.exr");
@@ -51,7 +53,8 @@ class Warnings : public CommandTest {
 };
 
 TEST_F(Warnings, axes_that_the_values_contradict_name_the_option) {
-    expect_warning({"--vdm", "swapped.exr"}, "write --axes t,n,b, as presets mudbox");
+    expect_warning({"--vdm", "swapped.exr"}, "set --axes to an order with G along n: the values do not show "
+                                             "which of the other two is along t (presets mudbox");
     expect_silence({"--vdm", "swapped.exr", "--axes", "t,n,b"});
     expect_silence({"--vdm", "swapped.exr", "--preset", "mudbox"});
     const CommandResult declared = render({"--vdm", "swapped.exr", "--axes", "t,b,n", "--strict"});
@@ -59,7 +62,9 @@ TEST_F(Warnings, axes_that_the_values_contradict_name_the_option) {
     EXPECT_TRUE(
         contains(declared.errors, "relief: note: displacement 'swapped': axes t,b,n are declared, but "))
         << declared.errors;
-    EXPECT_TRUE(contains(declared.errors, "write --axes t,n,b, as presets mudbox")) << declared.errors;
+    EXPECT_TRUE(contains(declared.errors, "set --axes to an order with G along n: the values do not show "
+                                          "which of the other two is along t (presets mudbox"))
+        << declared.errors;
     expect_silence({"--vdm", "bump.exr"});
 }
 
@@ -106,7 +111,8 @@ std::string make_grid(int n) {
 
 TEST_F(Warnings, of_axes_come_for_meshes_of_many_faces) {
     write("plane.obj", make_grid(230));
-    expect_warning({"--vdm", "swapped.exr"}, "write --axes t,n,b, as presets mudbox");
+    expect_warning({"--vdm", "swapped.exr"}, "set --axes to an order with G along n: the values do not show "
+                                             "which of the other two is along t (presets mudbox");
 }
 
 TEST_F(Warnings, tell_of_each_mesh_that_uses_a_map) {
@@ -134,7 +140,7 @@ TEST_F(Warnings, of_a_scene_file_name_its_keys) {
     const CommandResult result = render_scene("");
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_TRUE(contains(result.errors, R"(displacement 'm': axes t,b,n are assumed)")) << result.errors;
-    EXPECT_TRUE(contains(result.errors, R"(write "axes": "t,n,b")")) << result.errors;
+    EXPECT_TRUE(contains(result.errors, R"(set "axes" to an order with G along n)")) << result.errors;
     EXPECT_EQ(nlohmann::json::parse(read("s.json"))["warnings"].size(), 1u);
     EXPECT_EQ(render_scene(R"(, "axes": "t,n,b", "midlevel": 0, "space": "tangent")").errors, "");
 }

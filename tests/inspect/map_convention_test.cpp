@@ -26,13 +26,25 @@ AxisMap draw_axes(std::mt19937& random) {
     return axes;
 }
 
-TEST(MapConvention, twelve_signed_permutations_are_all_named) {
+/// The channel along the normal with its sign, and the other two but for turns by quarters.
+bool are_turned(AxisMap a, const AxisMap& b) {
+    for (int turn = 0; turn < 4; ++turn) {
+        if (a == b) return true;
+        for (size_t c = 0; c < 3; ++c) // t becomes b, b becomes -t
+            if (a.axis[c] < 2)
+                a.sign[c] = int8_t(a.axis[c] == 1 ? -a.sign[c] : a.sign[c]),
+                a.axis[c] = uint8_t(1 - a.axis[c]);
+    }
+    return false;
+}
+
+TEST(MapConvention, twelve_signed_permutations_are_all_named_but_for_turns_of_t_and_b) {
     std::mt19937 random(20);
     for (int k = 0; k < 12; ++k) {
         const AxisMap axes = draw_axes(random);
         const Displacement map = make_map(make_sculpt_texture(kSize, axes));
         const Displacement guess = guess_map_meaning(map);
-        EXPECT_EQ(guess.axes, axes) << "number " << k;
+        EXPECT_TRUE(are_turned(guess.axes, axes)) << "number " << k;
         EXPECT_EQ(guess.space, DisplacementSpace::tangent);
         EXPECT_EQ(guess.midlevel, Vec3f{});
     }
@@ -46,6 +58,7 @@ TEST(MapConvention, the_orders_of_programs_are_named_by_presets) {
     EXPECT_HAS_PART(looks({}), "blender-brush");
     EXPECT_HAS_PART(looks({{0, 2, 1}, {1, 1, 1}}), "mudbox");
     EXPECT_EQ(looks({{0, 2, 1}, {1, 1, -1}}).find("presets"), std::string::npos);
+    EXPECT_HAS_PART(looks({}), "; t and b may be turned by quarters");
 }
 
 TEST(MapConvention, rows_the_other_way_up_turn_no_sign) {
@@ -63,7 +76,7 @@ TEST(MapConvention, declared_axes_that_the_values_contradict_are_noted) {
     Displacement map = make_map(make_sculpt_texture(kSize, {{0, 2, 1}, {1, 1, 1}}));
     const Inspection declared = inspect_map(map, MapMeaning::declared);
     EXPECT_HAS_PART(find_text(declared, "I-AXES"), "the declared axes");
-    EXPECT_HAS_PART(find_text(declared, "I-AXES"), "write displacement.axes = t,n,b, as presets mudbox");
+    EXPECT_HAS_PART(find_text(declared, "I-AXES"), "moonray write t,n,b");
     map.assumed.axes = true;
     EXPECT_HAS_PART(find_text(inspect_map(map, MapMeaning::declared), "I-AXES"), "the assumed axes");
     map.axes = {{0, 2, 1}, {1, 1, 1}};

@@ -16,7 +16,7 @@ DECLARED = {
     "array": "array",
     "atomic": "atomic memory_order_acquire memory_order_relaxed memory_order_release memory_order_seq_cst",
     "bit": "bit_cast bit_ceil bit_floor bit_width countl_zero countr_one countr_zero endian has_single_bit popcount rotl",
-    "cctype": "isalnum isalpha isdigit isspace isxdigit tolower",
+    "cctype": "isalnum isalpha isdigit isspace isxdigit tolower toupper",
     "charconv": "from_chars from_chars_result to_chars",
     "chrono": "chrono",
     "concepts": "convertible_to same_as",
