@@ -13,16 +13,11 @@ const float kFlatCosine = 0.999998f;
 /// Of a corner's normal to the triangle's: one that leans further says nothing of how the surface is curved.
 const float kLeastCornerCosine = 0.5f;
 
-/// Whether light comes from above a smooth surface that is not flat.
-FN bool is_light_above(const Vec3 direction, const Vec3 geometric_normal, const Vec3 smooth_normal) {
-    return dot(direction, smooth_normal) > 0.0f && dot(geometric_normal, smooth_normal) < kFlatCosine;
-}
-
 /// Whether a triangle hides light that the smooth surface gets. Normals are unit vectors on the side that is
 /// lit; `smooth_normal`: interpolated, before normal maps.
 FN bool is_lost_light(const Vec3 direction, const Vec3 geometric_normal, const Vec3 smooth_normal) {
-    return dot(direction, geometric_normal) <= 0.0f &&
-           is_light_above(direction, geometric_normal, smooth_normal);
+    return dot(direction, geometric_normal) <= 0.0f && dot(direction, smooth_normal) > 0.0f &&
+           dot(geometric_normal, smooth_normal) < kFlatCosine;
 }
 
 /// Height above a point of a triangle, along its unit normal on the side that is lit, of the plane that

@@ -57,10 +57,7 @@ Terminators find_terminators(const PreparedScene& scene) {
             return surface.has_displacement == has_displacement && !surface.frames.empty();
         });
     };
-    const bool has_large_cells =
-        scene.levels.fixed_level >= 0 ||
-        std::ranges::any_of(scene.instances, [](const Instance& i) { return i.levels->has_large_cells(); });
-    if (has_large_cells && has(true)) return Terminators::all;
+    if (scene.levels.fixed_level >= 0 && has(true)) return Terminators::all;
     if (std::ranges::any_of(scene.surfaces, has_bent_base)) return Terminators::bases;
     return has(false) ? Terminators::polygons : Terminators::none;
 }

@@ -132,7 +132,7 @@ float find_base_lift(const PreparedScene& scene, const TraceHit& hit, const Fall
     const Affine& object_from_origin = instance.object_space.from_origin;
     const Vec3f normal = transform_normal(object_from_origin, base.normal());
     const float side = dot(normal, light.geometric_normal) < 0 ? -1.0f : 1.0f;
-    if (dot(light.direction, light.geometric_normal) > 0 && dot(light.direction, normal) * side > 0) return 0;
+    if (dot(light.direction, normal) * side > 0) return 0;
     const float lift = base.find_lift(transform_vector(object_from_origin, light.direction), side);
     if (!(lift > 0)) return 0;
     const Vec3f way = transform_vector(instance.world_from_object, base.normal() * (side * lift));

@@ -1,7 +1,6 @@
 #include "surface/patch/level_field.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -13,9 +12,6 @@ namespace relief {
 
 namespace {
 
-/// Levels that a patch lacks where its cells are large: the largest are eight pixels wide or more.
-constexpr int kLevelsOfLargeCells = 3;
-
 /// The least k such that `ratio` <= 2^k, in [0, kMaxLevel]; a ratio may exceed its power of two by rounding.
 int round_up_to_level(double ratio) {
     if (!(ratio < double(1 << kMaxLevel))) return kMaxLevel;
@@ -24,36 +20,25 @@ int round_up_to_level(double ratio) {
     return std::max(exponent, 0);
 }
 
-/// Without a cap.
-int choose_level(const LineMeasure& line, const LevelFieldConfig& config) {
+uint8_t choose_level(const LineMeasure& line, const LevelFieldConfig& config) {
     const double distance = length(config.camera - line.center) - line.radius;
     if (!(line.length > 0)) return 0;
     const double cell = double(config.pixel_error) * config.pixel_angle * distance;
     // A camera among the points sees the line as near as can be.
-    return cell > 0 ? round_up_to_level(line.length / cell) : kMaxLevel;
+    const int level = cell > 0 ? round_up_to_level(line.length / cell) : kMaxLevel;
+    return uint8_t(std::min(level, int(line.cap)));
 }
 
-/// Levels of a patch, and whether they leave its cells large.
-struct ChosenLevels {
+PatchLevels choose_levels(const PatchLines& lines, const LevelFieldConfig& config) {
     PatchLevels levels;
-    bool has_large_cells = false;
-
-    ChosenLevels(const PatchLines& lines, const LevelFieldConfig& config) {
-        for (const LineMeasure& line : lines.middles)
-            levels.patch = std::max(levels.patch, choose(line, config));
-        for (size_t edge = 0; edge < 4; ++edge) {
-            levels.edge[edge] = choose(lines.edges[edge], config);
-            levels.patch = std::max(levels.patch, levels.edge[edge]);
-        }
+    for (const LineMeasure& line : lines.middles)
+        levels.patch = std::max(levels.patch, choose_level(line, config));
+    for (size_t edge = 0; edge < 4; ++edge) {
+        levels.edge[edge] = choose_level(lines.edges[edge], config);
+        levels.patch = std::max(levels.patch, levels.edge[edge]);
     }
-
-  private:
-    uint8_t choose(const LineMeasure& line, const LevelFieldConfig& config) {
-        const int level = choose_level(line, config);
-        has_large_cells |= level >= line.cap + kLevelsOfLargeCells;
-        return uint8_t(std::min(level, line.cap));
-    }
-};
+    return levels;
+}
 
 PatchLines measure_patch(const Surface& surface, uint32_t patch, const Affine& world_from_object) {
     return measure_line_points(make_line_points(surface, patch), world_from_object);
@@ -80,15 +65,10 @@ LevelField LevelField::fill(const Surface& surface, const LevelFieldConfig& conf
         return field;
     }
     field.packed_.resize(surface.patch_count());
-    std::atomic<bool> has_large_cells = false;
     parallel_for("level field", field.packed_.size(), 256, [&](size_t begin, size_t end) {
-        for (size_t patch = begin; patch < end; ++patch) {
-            const ChosenLevels chosen(find_lines(uint32_t(patch)), config);
-            field.packed_[patch] = pack_levels(chosen.levels);
-            if (chosen.has_large_cells) has_large_cells = true;
-        }
+        for (size_t patch = begin; patch < end; ++patch)
+            field.packed_[patch] = pack_levels(choose_levels(find_lines(uint32_t(patch)), config));
     });
-    field.has_large_cells_ = has_large_cells;
     field.find_max_level();
     return field;
 }
@@ -117,7 +97,7 @@ void LevelField::update(const Surface& surface, const Affine& world_from_object,
         for (size_t patch = begin; patch < end; ++patch)
             if (is_changed[patch])
                 packed_[patch] = pack_levels(
-                    ChosenLevels(measure_patch(surface, uint32_t(patch), world_from_object), config).levels);
+                    choose_levels(measure_patch(surface, uint32_t(patch), world_from_object), config));
     });
     find_max_level();
 }

@@ -48,8 +48,6 @@ class LevelField {
     /// All patches have the same levels.
     bool is_uniform() const { return packed_.empty(); }
     int max_level() const { return max_level_; }
-    /// Whether cells of some patch are as large as several pixels, as the map has no texels for more.
-    bool has_large_cells() const { return has_large_cells_; }
     size_t byte_count() const { return packed_.size() * sizeof(uint32_t); }
     friend bool operator==(const LevelField&, const LevelField&) = default;
 
@@ -61,7 +59,6 @@ class LevelField {
     std::vector<uint32_t> packed_; ///< one a patch; empty: `fixed_` everywhere
     uint32_t fixed_ = 0;
     int max_level_ = 0;
-    bool has_large_cells_ = false;
 };
 
 } // namespace relief

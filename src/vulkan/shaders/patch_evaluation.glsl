@@ -49,9 +49,14 @@ vec3 fetch_spline(const MapImage image, const MapData map, const int left, const
     CubicWeights along = weigh_spline(fraction.x);
     vec3 point[4];
     for (int j = 0; j < 4; ++j) {
+        int row = top + j - 1;
+        int wrapped_row = wrap_texel(row, int(image.texels.height), map.wrap);
         vec3 coefficient[4];
-        for (int i = 0; i < 4; ++i)
-            coefficient[i] = load_map_texel(image, map, ivec2(left + i - 1, top + j - 1));
+        for (int i = 0; i < 4; ++i) {
+            int column = left + i - 1;
+            ivec2 wrapped = ivec2(wrap_texel(column, int(image.texels.width), map.wrap), wrapped_row);
+            coefficient[i] = load_map_texel(image, map, ivec2(column, row), wrapped);
+        }
         point[j] = blend_cubic_vectors(coefficient[0], coefficient[1], coefficient[2], coefficient[3], along);
     }
     return blend_cubic_vectors(point[0], point[1], point[2], point[3], weigh_spline(fraction.y));
@@ -72,10 +77,15 @@ vec3 fetch_displacement(const MapData map, const uint tile, const uint mip, cons
     precise float fy = y - y0;
     if (kHasSmooth != 0 && map.is_smooth != 0u)
         return decode_displacement(map, fetch_spline(image, map, int(x0), int(y0), vec2(fx, fy)));
-    vec3 t00 = load_map_texel(image, map, ivec2(int(x0), int(y0)));
-    vec3 t10 = load_map_texel(image, map, ivec2(int(x0) + 1, int(y0)));
-    vec3 t01 = load_map_texel(image, map, ivec2(int(x0), int(y0) + 1));
-    vec3 t11 = load_map_texel(image, map, ivec2(int(x0) + 1, int(y0) + 1));
+    ivec2 low = ivec2(int(x0), int(y0));
+    int left = wrap_texel(low.x, width, map.wrap);
+    int right = wrap_texel(low.x + 1, width, map.wrap);
+    int top = wrap_texel(low.y, height, map.wrap);
+    int bottom = wrap_texel(low.y + 1, height, map.wrap);
+    vec3 t00 = load_map_texel(image, map, low, ivec2(left, top));
+    vec3 t10 = load_map_texel(image, map, low + ivec2(1, 0), ivec2(right, top));
+    vec3 t01 = load_map_texel(image, map, low + ivec2(0, 1), ivec2(left, bottom));
+    vec3 t11 = load_map_texel(image, map, low + ivec2(1, 1), ivec2(right, bottom));
     vec3 value = vec3(filter_texels(t00.x, t10.x, t01.x, t11.x, fx, fy),
                       filter_texels(t00.y, t10.y, t01.y, t11.y, fx, fy),
                       filter_texels(t00.z, t10.z, t01.z, t11.z, fx, fy));

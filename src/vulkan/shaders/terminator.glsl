@@ -103,11 +103,11 @@ float find_base_lift(const HitData hit, const vec3 geometric_normal, const vec3 
     AffineData object_from_origin = instances[hit.instance].object_from_origin;
     vec3 normal_world = transform_normal(object_from_origin, normal);
     float side = dot(normal_world, geometric_normal) < 0.0 ? -1.0 : 1.0;
-    if (dot(direction, geometric_normal) > 0.0 && dot(direction, normal_world) * side > 0.0) return 0.0;
+    if (dot(direction, normal_world) * side > 0.0) return 0.0;
     vec3 lit = normal * side;
     vec3 smooth_normal =
         make_unit(interpolate_quad(corner_normal[0], corner_normal[1], corner_normal[2], corner_normal[3], at)) * side;
-    if (!is_light_above(transform_vector(object_from_origin, direction), lit, smooth_normal)) return 0.0;
+    if (!is_lost_light(transform_vector(object_from_origin, direction), lit, smooth_normal)) return 0.0;
     vec3 place = interpolate_quad(corner[0], corner[1], corner[2], corner[3], at);
     for (uint k = 0u; k < 4u; ++k) {
         height[k] = find_tangent_height(corner[k] - place, corner_normal[k], lit);
@@ -119,7 +119,7 @@ float find_base_lift(const HitData hit, const vec3 geometric_normal, const vec3 
 }
 
 /// How far above the point the smooth surface lies from which light of that direction is seen; 0: it comes
-/// from above the triangle, and from above the patch that is displaced, or from below what is smooth.
+/// from above the triangle and from above the patch that is displaced, or from below what is smooth.
 float find_light_lift(const HitData hit, const vec3 geometric_normal, const vec3 direction) {
     return max(find_triangle_lift(hit, geometric_normal, direction), find_base_lift(hit, geometric_normal, direction));
 }

@@ -73,15 +73,15 @@ vec3 load_beyond_tile(const MapImage image, const MapData map, const ivec2 place
     return read_between(textures[map.first_tile + image.mip * map.tile_count + tile], at, size);
 }
 
-/// Texel for a fetch; where none is, and outside with kWrapBlack, there is no displacement.
-vec3 load_map_texel(const MapImage image, const MapData map, const ivec2 at) {
+/// Texel for a fetch; where none is, and outside with kWrapBlack, there is no displacement. `wrapped` is `at` by
+/// wrap_texel: callers wrap each row and column once, which takes fewer registers.
+vec3 load_map_texel(const MapImage image, const MapData map, const ivec2 at, const ivec2 wrapped) {
     ivec2 size = ivec2(int(image.texels.width), int(image.texels.height));
     if (kHasTileBorders != 0 && map.first_neighbour != kNone &&
         (at.x < 0 || at.y < 0 || at.x >= size.x || at.y >= size.y))
         return load_beyond_tile(image, map, at, size);
-    int column = wrap_texel(at.x, size.x, map.wrap);
-    int row = wrap_texel(at.y, size.y, map.wrap);
-    return column < 0 || row < 0 ? map.midlevel : load_texel(image.texels, uint(column), uint(row)).xyz;
+    return wrapped.x < 0 || wrapped.y < 0 ? map.midlevel
+                                          : load_texel(image.texels, uint(wrapped.x), uint(wrapped.y)).xyz;
 }
 
 #endif
