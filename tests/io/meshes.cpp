@@ -45,6 +45,7 @@ TEST_F(MeshFiles, obj_numbers_that_are_none_are_named_with_their_line) {
         return message_of([&] { load_mesh(folder_ / "n.obj"); }, ErrorKind::bad_input);
     };
     EXPECT_HAS(error_of("v nan 1 0"), "n.obj, line 3: 'nan' is not a number");
+    EXPECT_NO_THROW(parse_obj("v 0 0 0 nan nan nan\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", "c.obj")) << "a colour";
     EXPECT_HAS(error_of("v 1 inf 0"), "'inf' is not a number");
     EXPECT_HAS(error_of("v 1,5 2,5 0,25"), "line 3: '1,5' is not a number");
     EXPECT_HAS(error_of("v 1 0"), "line 3: 'v' has 2 of 3 numbers");

@@ -134,6 +134,22 @@ TEST(ConcaveFaces, displaced_bodies_are_closed_and_have_the_area_of_their_faces)
         }
 }
 
+/// Other faces than quads refine a whole mesh; a concave quad becomes two quads instead.
+TEST(ConcaveFaces, a_concave_quad_leaves_the_other_quads_whole) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0.5f, 0.5f, 0}, {0, 2, 0}, {4, 0, 0}, {4, 2, 0}};
+    mesh.face_sizes = {4, 4};
+    mesh.position_indices = {0, 1, 2, 3, 1, 4, 5, 2};
+    for (const Vec3f& p : mesh.positions) mesh.uvs.push_back({p.x / 4, p.y / 4});
+    mesh.uv_indices = mesh.position_indices;
+    const Displacement displacement = make_flat_map();
+    const Surface surface = make_surface(mesh, &displacement, {});
+    EXPECT_EQ(surface.patch_count(), 3u);
+    const double dart = compute_area({{0, 0}, {2, 0}, {0.5f, 0.5f}, {0, 2}});
+    const double beside = compute_area({{2, 0}, {4, 0}, {4, 2}, {0.5f, 0.5f}});
+    EXPECT_NEAR(compute_displaced_area(surface), dart + beside, 1e-5);
+}
+
 TEST(ConcaveFaces, two_faces_that_are_cut_between_the_same_points_stay_apart) {
     const Displacement displacement = make_flat_map();
     for (const SubdivisionScheme scheme : {SubdivisionScheme::none, SubdivisionScheme::bilinear})

@@ -168,8 +168,8 @@ class ObjReader {
         for (std::string_view word = text_.next_word(); !word.empty(); word = text_.next_word(), ++count) {
             double value = 0;
             const std::errc code = read_number(word.substr(word.starts_with('+') ? 1 : 0), value);
-            // NaN and infinity are refused where a face needs them.
-            if (code == std::errc() && !std::isfinite(value)) not_finite_ = word.substr(0, 40);
+            // NaN and infinity are refused where a face needs them. Colours of points stand behind.
+            if (count < 3 && code == std::errc() && !std::isfinite(value)) not_finite_ = word.substr(0, 40);
             if (code == std::errc::invalid_argument)
                 fail(fmt::format("'{}' is not a number", word.substr(0, 40)), kNumberHint);
             // Too small is 0. Too large stays so, and is refused with all that is too large for a scene.

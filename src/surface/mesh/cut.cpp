@@ -161,9 +161,11 @@ class ConcaveFaces {
     std::unordered_map<uint64_t, uint32_t> uses_;                   ///< of the points of each cut
 };
 
-/// Adds the triangles of a concave face; those with two corners at one point are left out.
+/// Adds the triangles of a concave face; those with two corners at one point are left out. The two of a quad
+/// are quads with a corner in the middle of the cut, so that a mesh of quads stays one.
 void add_triangles(const Polygons& polygons, uint32_t face, const ConcaveFaces& concave, Polygons& result) {
     const uint32_t start = polygons.starts[face];
+    const bool is_quad = polygons.face_size(face) == 4;
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
     const auto find_middle = [&](uint32_t a, uint32_t b) {
         const auto [place, is_new] = middles.try_emplace(std::minmax(a, b), kNoIndex);
@@ -182,7 +184,7 @@ void add_triangles(const Polygons& polygons, uint32_t face, const ConcaveFaces& 
         for (size_t k = 0; k < 3; ++k) {
             const uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
             add_corner(polygons, start + a, result);
-            if (concave.is_cut(face, triangle, k) && concave.is_shared(face, a, b))
+            if (concave.is_cut(face, triangle, k) && (is_quad || concave.is_shared(face, a, b)))
                 add_corner_between(polygons, start + a, start + b, {find_middle(a, b), 0.5f}, result);
         }
     }
