@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "relief/image.h"
+#include "relief/types.h"
 
 namespace relief::viewer {
 
