@@ -50,7 +50,16 @@ bool has_bent_base(const Surface& surface) {
     return false;
 }
 
-/// Of surfaces that are not tessellated yet.
+/// Whether the cells of a displaced surface stay large from nearby: levels end at the texels of the map.
+bool has_few_texels(const Surface& surface) {
+    constexpr uint64_t kFewTexels = 64; // per patch
+    uint64_t texels = 0;
+    for (const DisplacementMap::Tile& tile : surface.map.tiles)
+        texels += uint64_t(tile.texture->width) * tile.texture->height;
+    return texels < kFewTexels * surface.patch_count();
+}
+
+/// Of surfaces that are not tessellated yet. The same for all views, so that sessions need not follow them.
 Terminators find_terminators(const PreparedScene& scene) {
     const auto has = [&](bool has_displacement) {
         return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
@@ -58,8 +67,13 @@ Terminators find_terminators(const PreparedScene& scene) {
         });
     };
     if (scene.levels.fixed_level >= 0 && has(true)) return Terminators::all;
-    if (std::ranges::any_of(scene.surfaces, has_bent_base)) return Terminators::bases;
-    return has(false) ? Terminators::polygons : Terminators::none;
+    Terminators most = has(false) ? Terminators::polygons : Terminators::none;
+    for (const Surface& surface : scene.surfaces) {
+        if (!has_bent_base(surface)) continue;
+        if (has_few_texels(surface)) return Terminators::all;
+        most = Terminators::bases;
+    }
+    return most;
 }
 
 void prepare_materials(std::vector<Material> materials, PreparedScene& prepared) {

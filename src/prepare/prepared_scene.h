@@ -64,8 +64,8 @@ struct PreparedMap {
 
 /// Triangles that let light through which comes from above the smooth surface that they stand for
 /// (formulas/terminator.h): polygons with normals; displaced patches too, with `bases` because they are flat
-/// while their normals are not, with `all` also because their triangles are as large as a fixed level makes
-/// them. Triangles of automatic levels are as small as pixels.
+/// while their normals are not, with `all` also because their triangles are as large as a fixed level or, on
+/// flat patches, few texels make them. Other triangles of automatic levels are as small as pixels.
 enum class Terminators : uint32_t { none, polygons, bases, all };
 
 struct PreparedScene {

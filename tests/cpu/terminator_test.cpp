@@ -112,7 +112,11 @@ TEST(Terminator, automatic_levels_of_smooth_bases_stay_as_they_are) {
         return test::make_flat_displaced(std::move(mesh), SubdivisionScheme::none);
     };
     EXPECT_EQ(find(test::make_displaced_sphere()), Terminators::none);
-    EXPECT_EQ(find(make_flat(test::make_icosphere(3))), Terminators::bases);
+    EXPECT_EQ(find(make_flat(test::make_icosphere(3))), Terminators::all) << "a map of few texels";
+    Scene fine = make_flat(test::make_icosphere(0));
+    fine.displacements[0] =
+        test::make_displacement(test::make_random_map(512, 512, 0, 1), DisplacementSpace::object);
+    EXPECT_EQ(find(std::move(fine)), Terminators::bases);
     EXPECT_EQ(find(test::make_sphere_scene(make_floor(1))), Terminators::none);
     EXPECT_EQ(find(test::make_sphere_scene(test::make_icosphere(1))), Terminators::polygons);
     settings.surface.level = 2;
