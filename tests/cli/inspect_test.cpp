@@ -167,10 +167,9 @@ TEST_F(Inspect, a_mesh_is_inspected_as_the_scene_that_a_render_would_make) {
 }
 
 TEST_F(Inspect, a_mesh_with_its_map_has_the_findings_of_that_map) {
-    write("mirrored.obj",
-          "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
-          "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\nvt 1 0\nvt .6 0\nvt .6 1\nvt 1 1\n"
-          "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\n");
+    write("mirrored.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+                          "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\nvt 1 0\nvt .6 0\nvt .6 1\nvt 1 1\n"
+                          "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\n");
     const auto inspect = [&](const std::string& space) {
         return run({"inspect", "mirrored.obj", "--vdm", "bump.exr", "--space", space}).output;
     };

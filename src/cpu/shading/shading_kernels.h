@@ -47,9 +47,9 @@ struct VertexLanes {
     // Given. Lanes beyond the batch may hold anything; with metallic 0 and ior 1 they cost nothing.
     alignas(64) float base_color[3][16], roughness[16], metallic[16], ior[16];
     alignas(64) float light_direction[3][16], light_pdf[16]; ///< density 0: none was drawn, any direction
-    alignas(64) float light_lift[16]; ///< of find_light_lift()
-    uint32_t has_layers;              ///< bits of lanes with layers; metallic 0 and ior 1 save work in them
-    alignas(64) uint32_t layers[16];  ///< of such a lane, its record
+    alignas(64) float light_lift[16];                        ///< of find_light_lift()
+    uint32_t has_layers;             ///< bits of lanes with layers; metallic 0 and ior 1 save work in them
+    alignas(64) uint32_t layers[16]; ///< of such a lane, its record
     alignas(64) float layered_metallic[16]; ///< of such a lane, in place of the record's
     alignas(64) float tangent[3][16];       ///< of a lane whose layers or glass are anisotropic, world space
     uint32_t has_glass;             ///< bits of lanes that are glass; metallic 0 and ior 1 save work in them

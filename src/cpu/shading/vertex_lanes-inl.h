@@ -106,8 +106,8 @@ RELIEF_INLINE void store_light(const PointLanes& point, const Vec3& direction, c
     const Float zero(0.0f);
     const Float lift = Float::load(v.light_lift);
     const Bool is_lifted = lift > zero, is_above = dot(direction, point.geometric_normal) > zero;
-    const Bool needs_shadow_ray = Float::load(v.light_pdf) > zero && (is_above || is_lifted) &&
-                                  !is_black(toward.value);
+    const Bool needs_shadow_ray =
+        Float::load(v.light_pdf) > zero && (is_above || is_lifted) && !is_black(toward.value);
     v.needs_shadow_ray = to_mask(needs_shadow_ray);
     store_vectors(toward.value, v.light_reflected);
     // Paths find light from above the triangle too.

@@ -56,8 +56,8 @@ class SubdivisionMesh {
     int level() const;
     /// Patches at that level.
     uint64_t quad_count() const;
-    /// Throws out_of_memory if the patches are too many, or need more memory than there is; `where` names file
-    /// and mesh.
+    /// Throws out_of_memory if the patches are too many, or need more memory than there is; `where` names
+    /// file and mesh.
     RefinedMesh refine(const std::string& where);
     /// Points after `level` steps, not on the limit; after refine().
     std::vector<Vec3f> compute_points() const;
