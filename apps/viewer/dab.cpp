@@ -6,10 +6,13 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <queue>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "common/vectors.h"
-#include "viewer/picture_layers.h"
+#include "viewer/seen_texels.h"
 
 namespace relief::viewer {
 
@@ -17,246 +20,198 @@ using namespace vectors;
 
 namespace {
 
-/// Pixels to those that derivatives are taken from: samples lie anywhere within their pixels. Of small
-/// pictures the second, as far as the first lies beyond a seam.
-constexpr int kReaches[] = {3, 1};
-/// Two pixels of which uv differs by more lie on two sides of a seam.
-constexpr float kSeam = 0.25f;
-/// Pixels that are further apart in space than this many widths of a pixel on their surface lie on two
-/// sheets.
-constexpr float kJump = 1.5f;
-constexpr float kLeastCosine = 0.3f; ///< of surfaces that are seen at a flat angle
-/// Texels per length that differ by more from those of most pixels: uvs of two places were mixed.
-constexpr float kMostStretch = 4;
-/// Pixels around a sample whose texels it speaks for.
-constexpr float kFootprint = 2;
-constexpr float kMostTexels = 128; ///< of a footprint, per side
-constexpr int kBlockSide = 32;     ///< texels
+/// Nodes of the lattice between the centre of a dab and its edge, about.
+constexpr float kNodesPerRadius = 48;
+/// Way along the surface from what is seen, in radii, at which weights end.
+constexpr float kHiddenReach = 0.75f;
+/// How far the surface of a texel may lie from what a pixel shows, in radii: the map may have changed since
+/// the picture was made, and a pixel at a rim may show the mean of two places.
+constexpr float kStale = 0.5f;
+/// Pixels between seen texels, along the surface, that are no way into what is hidden.
+constexpr float kSlack = 3;
+constexpr int kBlockSide = 32; ///< texels
 
 /// 1 in the middle, 0 from 1 on, without a kink; of the square of the distance.
 float find_weight(float square) { return square < 1 ? (1 - square) * (1 - square) : 0; }
 
-/// Change along one axis of the picture.
-struct Change {
-    Vec2f uv;
-    Vec3f position;
+/// A place of the lattice: every few texels of a tile.
+struct Node {
+    int udim = 1001, x = 0, y = 0;
+    friend auto operator<=>(const Node&, const Node&) = default;
 };
 
-/// What one pixel says of the surface. Changes are per pixel of the shown picture.
-struct Sample {
-    Vec2f uv;
-    Vec3f position;
-    Change right, down;
-    int udim = 1001;
-    float stretch = 0; ///< change of uv per length
+struct NodeHash {
+    size_t operator()(const Node& node) const {
+        return size_t((uint64_t(uint32_t(node.udim)) * 0x9e3779b97f4a7c15u) ^
+                      (uint64_t(uint32_t(node.x)) << 32 | uint32_t(node.y)) * 0xbf58476d1ce4e5b9u);
+    }
 };
 
-class SampleReader {
+/// Weights on a lattice of texels, from what is seen into what is hidden.
+class Lattice {
   public:
-    SampleReader(const Scene& scene, const ShownPicture& picture, const SurfacePoint& centre)
-        : scene_(scene), picture_(picture), layers_(picture.image), centre_(centre) {
-        pixel_ = centre.pixel_size * float(picture.full_width) / float(picture.image.width);
-        is_udim_ = scene.displacements[scene.objects[centre.object].displacement].is_udim;
+    /// `middle`: the texel that the cursor is on.
+    Lattice(const Displacement& map, const TexelPlaces& places, const SeenTexel& middle, float radius)
+        : map_(map), places_(places), centre_(middle.position), radius_(radius) {
+        choose_step(middle);
+        // Of the map as it is now, like all other places.
+        const auto place = find_place({middle.udim, int(middle.column) / step_, int(middle.row) / step_});
+        if (place && length(*place - centre_) < kStale * radius_) centre_ = *place;
     }
 
-    /// Those of pixels within `radius`, world units, and a little more.
-    std::vector<Sample> read(float radius) {
-        std::vector<Sample> samples;
-        const Vec3f forward = normalize(picture_.camera.to - picture_.camera.from);
-        const float nearer = std::min(0.75f, radius / std::max(centre_.distance, 1e-20f));
-        const float reach = radius / (pixel_ * (1 - nearer)) + kFootprint + 1;
-        const auto [x, y] = find_pixel(forward);
-        const int x0 = std::max(0, int(x - reach)), x1 = std::min(picture_.image.width, int(x + reach) + 1);
-        const int y0 = std::max(0, int(y - reach)), y1 = std::min(picture_.image.height, int(y + reach) + 1);
-        const float most = radius + (kFootprint + 1) * pixel_;
-        for (int row = y0; row < y1; ++row)
-            for (int column = x0; column < x1; ++column)
-                if (is_object(column, row) && length(layers_.position(column, row) - centre_.position) < most)
-                    if (const std::optional<Sample> sample = read_sample(column, row))
-                        samples.push_back(*sample);
-        drop_mixtures(samples);
-        return samples;
+    void add_seen(const SeenTexel& texel) {
+        const Node node{texel.udim, int(texel.column) / step_, int(texel.row) / step_};
+        const std::optional<Vec3f> place = find_place(node);
+        if (place && length(*place - texel.position) < kStale * radius_) reach(node, *place, 0);
+    }
+
+    /// Goes on along the surface (Dijkstra 1959).
+    void spread(float slack) {
+        while (!next_.empty()) {
+            const auto [way, node] = next_.top();
+            next_.pop();
+            const Reached from = reached_.at(node);
+            if (way > from.way) continue;
+            for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+                if (const std::optional<Node> other = find_neighbour(node, dx, dy))
+                    if (const std::optional<Vec3f> place = find_place(*other))
+                        reach(*other, *place, way + length(*place - from.place));
+        }
+        for (auto& [node, reached] : reached_) {
+            const Vec3f off = (reached.place - centre_) * (1 / radius_);
+            const float hidden = std::max(0.0f, reached.way - slack) / (kHiddenReach * radius_);
+            reached.weight = find_weight(dot(off, off)) * find_weight(hidden * hidden);
+        }
+    }
+
+    /// Calls `add(udim, x, y, weight)` for each texel with a weight.
+    template <class Add> void visit_texels(const Add& add) const {
+        for (const auto& [node, reached] : reached_) {
+            const MapTile& tile = *find_tile(node.udim);
+            const int right = std::min((node.x + 1) * step_, int(tile.texture->width)),
+                      bottom = std::min((node.y + 1) * step_, int(tile.texture->height));
+            for (int y = node.y * step_; y < bottom; ++y)
+                for (int x = node.x * step_; x < right; ++x)
+                    if (const float weight = blend(node, float(x) / float(step_) - float(node.x),
+                                                   float(y) / float(step_) - float(node.y));
+                        weight > 0)
+                        add(node.udim, x, y, weight);
+        }
     }
 
   private:
-    /// Where the picture shows the centre.
-    Vec2f find_pixel(const Vec3f& forward) const {
-        const Vec3f right = normalize(cross(forward, picture_.camera.up)), up = cross(right, forward);
-        const Vec3f to = centre_.position - picture_.camera.from;
-        const float wide = float(picture_.image.width), high = float(picture_.image.height);
-        return {0.5f * wide - picture_.camera.shift.x * high + dot(to, right) / pixel_,
-                0.5f * high + picture_.camera.shift.y * high - dot(to, up) / pixel_};
+    /// So that the radius spans about kNodesPerRadius nodes around a texel.
+    void choose_step(const SeenTexel& texel) {
+        constexpr int kApart = 4;
+        const MapTile& tile = *find_tile(texel.udim);
+        const auto place = [&](int dx, int dy) {
+            return places_.find(map_, tile,
+                                std::clamp(int(texel.column) + dx, 0, int(tile.texture->width) - 1),
+                                std::clamp(int(texel.row) + dy, 0, int(tile.texture->height) - 1));
+        };
+        const auto middle = place(0, 0), right = place(kApart, 0), below = place(0, kApart);
+        if (!middle || !right || !below) return;
+        const float size = std::min(length(*right - *middle), length(*below - *middle)) / kApart;
+        const float nodes = radius_ / std::max(size, radius_ * 1e-4f) / kNodesPerRadius;
+        step_ = std::clamp(int(nodes), 1, 64);
     }
 
-    bool is_object(int x, int y) const {
-        return layers_.has_surface(x, y) && layers_.id(x, y) == float(centre_.object + 1);
-    }
+    struct Reached {
+        Vec3f place{};
+        float way = 0, weight = 0;
+    };
 
-    /// Between pixels at most `pixels` apart on one sheet.
-    std::optional<Change> find_change(int x, int y, int to_x, int to_y, float longest) const {
-        if (!is_object(to_x, to_y)) return std::nullopt;
-        const Vec2f a = layers_.uv(x, y), b = layers_.uv(to_x, to_y);
-        const Change change{{b.x - a.x, b.y - a.y}, layers_.position(to_x, to_y) - layers_.position(x, y)};
-        if (std::fabs(change.uv.x) > kSeam || std::fabs(change.uv.y) > kSeam ||
-            length(change.position) > longest)
-            return std::nullopt;
-        return change;
-    }
-
-    /// By the neighbours before and behind, as far as they lie on the same sheet.
-    std::optional<Change> differentiate(int x, int y, int right, int down, float width) const {
-        for (const int reach : kReaches) {
-            const float longest = kJump * float(reach + 1) * width;
-            const auto next = find_change(x, y, x + reach * right, y + reach * down, longest);
-            const auto last = find_change(x, y, x - reach * right, y - reach * down, longest);
-            if (!next && !last) continue;
-            const float pixels = float(reach) * float(int(next.has_value()) + int(last.has_value()));
-            const Change a = next.value_or(Change{}), b = last.value_or(Change{});
-            return Change{{(a.uv.x - b.uv.x) / pixels, (a.uv.y - b.uv.y) / pixels},
-                          (a.position - b.position) * (1 / pixels)};
+    const MapTile* find_tile(int udim) const {
+        if (!tile_ || tile_->udim != udim) {
+            const auto found = std::ranges::find(map_.tiles, udim, &MapTile::udim);
+            tile_ = found == map_.tiles.end() ? nullptr : &*found;
         }
-        return std::nullopt;
+        return tile_;
     }
 
-    std::optional<Sample> read_sample(int x, int y) {
-        const Vec3f position = layers_.position(x, y);
-        const Vec3f view = normalize(position - picture_.camera.from);
-        const float cosine = std::max(std::fabs(dot(normalize(layers_.normal(x, y)), view)), kLeastCosine);
-        const auto right = differentiate(x, y, 1, 0, pixel_ / cosine),
-                   down = differentiate(x, y, 0, 1, pixel_ / cosine);
-        if (!right || !down) return std::nullopt;
-        Sample sample{layers_.uv(x, y), position, *right, *down};
-        const float way = length(right->position) + length(down->position);
-        sample.stretch = (std::hypot(right->uv.x, right->uv.y) + std::hypot(down->uv.x, down->uv.y)) /
-                         std::max(way, 1e-30f);
-        if (is_udim_) sample.udim = find_tile(x, y, sample);
-        return sample;
+    std::optional<Vec3f> find_place(const Node& node) const {
+        const MapTile& tile = *find_tile(node.udim);
+        return places_.find(map_, tile, std::min(node.x * step_, int(tile.texture->width) - 1),
+                            std::min(node.y * step_, int(tile.texture->height) - 1));
     }
 
-    /// The tile of the last pixel where uvs go on from there; else it is looked for among all faces.
-    int find_tile(int x, int y, const Sample& sample) {
-        const bool goes_on = y == last_y_ && x == last_x_ + 1 &&
-                             std::hypot(sample.uv.x - last_uv_.x, sample.uv.y - last_uv_.y) <
-                                 4 * (std::hypot(sample.right.uv.x, sample.right.uv.y) + 1e-6f);
-        if (!goes_on) {
-            SurfacePoint point = centre_;
-            point.uv = sample.uv, point.position = sample.position;
-            last_udim_ = find_udim(scene_, point);
-        }
-        last_x_ = x, last_y_ = y, last_uv_ = sample.uv;
-        return last_udim_;
+    std::optional<Node> find_neighbour(const Node& node, int dx, int dy) const {
+        const MapTile& tile = *find_tile(node.udim);
+        const int columns = (int(tile.texture->width) + step_ - 1) / step_,
+                  rows = (int(tile.texture->height) + step_ - 1) / step_;
+        Node other{node.udim, node.x + dx, node.y + dy};
+        const bool is_inside = other.x >= 0 && other.y >= 0 && other.x < columns && other.y < rows;
+        if (is_inside) return other;
+        if (map_.wrap != WrapMode::repeat || map_.is_udim) return std::nullopt;
+        other.x = (other.x + columns) % columns, other.y = (other.y + rows) % rows;
+        return other;
     }
 
-    /// A pixel on a seam may hold the mean of two places of the map.
-    static void drop_mixtures(std::vector<Sample>& samples) {
-        if (samples.empty()) return;
-        std::vector<float> stretches;
-        for (const Sample& sample : samples) stretches.push_back(sample.stretch);
-        const auto middle = stretches.begin() + std::ptrdiff_t(stretches.size() / 2);
-        std::nth_element(stretches.begin(), middle, stretches.end());
-        const float most = kMostStretch * *middle;
-        std::erase_if(samples, [&](const Sample& sample) { return sample.stretch > most; });
+    void reach(const Node& node, const Vec3f& place, float way) {
+        if (!(length(place - centre_) < radius_)) return;
+        if (way > (1 + kHiddenReach) * radius_) return;
+        const auto [found, is_new] = reached_.try_emplace(node, Reached{place, way, 0});
+        if (!is_new && found->second.way <= way) return;
+        found->second.way = way;
+        next_.push({way, node});
     }
 
-    const Scene& scene_;
-    const ShownPicture& picture_;
-    const PictureLayers layers_;
-    const SurfacePoint& centre_;
-    float pixel_ = 0; ///< width of a pixel of the shown picture at the centre
-    bool is_udim_ = false;
-    int last_x_ = -2, last_y_ = -1, last_udim_ = 1001;
-    Vec2f last_uv_{};
+    /// Between the four nodes around a place; those that were not reached have no weight.
+    float blend(const Node& node, float s, float t) const {
+        const auto weight = [&](int dx, int dy) {
+            const auto found = reached_.find({node.udim, node.x + dx, node.y + dy});
+            return found == reached_.end() ? 0.0f : found->second.weight;
+        };
+        if (step_ == 1) return weight(0, 0);
+        return (weight(0, 0) * (1 - s) + weight(1, 0) * s) * (1 - t) +
+               (weight(0, 1) * (1 - s) + weight(1, 1) * s) * t;
+    }
+
+    const Displacement& map_;
+    const TexelPlaces& places_;
+    Vec3f centre_;
+    float radius_;
+    int step_ = 1;
+    mutable const MapTile* tile_ = nullptr; ///< that was asked for last
+    std::unordered_map<Node, Reached, NodeHash> reached_;
+    std::priority_queue<std::pair<float, Node>, std::vector<std::pair<float, Node>>, std::greater<>> next_;
 };
 
-/// Means of the weights that samples give to texels.
-class WeightSums {
+/// Texels by blocks.
+class PieceMaker {
   public:
-    WeightSums(const Displacement& map, const SurfacePoint& centre, float radius)
-        : map_(map), centre_(centre), radius_(radius) {}
-
-    void add(const Sample& sample) {
-        const auto tile = std::ranges::find(map_.tiles, sample.udim, &MapTile::udim);
-        if (tile == map_.tiles.end() || !tile->texture) return;
-        const int width = int(tile->texture->width), height = int(tile->texture->height);
-        const float along_v = map_.flip_v ? 1.0f : -1.0f;
-        const auto to_texels = [&](const Vec2f& change) {
-            return Vec2f{change.x * float(width), change.y * float(height) * along_v};
-        };
-        const float row = map_.flip_v ? sample.uv.y : 1 - sample.uv.y;
-        const Vec2f at{(sample.uv.x - std::floor(sample.uv.x)) * float(width),
-                       (row - std::floor(row)) * float(height)};
-        const Vec2f right = to_texels(sample.right.uv), down = to_texels(sample.down.uv);
-        const float determinant = right.x * down.y - right.y * down.x;
-        if (!(std::fabs(determinant) > 1e-12f)) return;
-        const float across = std::min(kFootprint * (std::fabs(right.x) + std::fabs(down.x)), kMostTexels);
-        const float below = std::min(kFootprint * (std::fabs(right.y) + std::fabs(down.y)), kMostTexels);
-        for (int y = int(std::floor(at.y - below)); float(y) <= at.y + below; ++y)
-            for (int x = int(std::floor(at.x - across)); float(x) <= at.x + across; ++x) {
-                const float dx = float(x) + 0.5f - at.x, dy = float(y) + 0.5f - at.y;
-                const float a = (dx * down.y - dy * down.x) / determinant,
-                            b = (dy * right.x - dx * right.y) / determinant;
-                const float share = std::max(0.0f, 1 - std::fabs(a) / kFootprint) *
-                                    std::max(0.0f, 1 - std::fabs(b) / kFootprint);
-                if (share > 0)
-                    add_texel(sample.udim, wrap(x, width), wrap(y, height), share,
-                              sample.position + sample.right.position * a + sample.down.position * b);
-            }
+    void add(int udim, int x, int y, float weight) {
+        const Key key{udim, y / kBlockSide, x / kBlockSide};
+        if (!last_ || key != last_key_) last_ = &blocks_[key], last_key_ = key;
+        (*last_)[size_t(y % kBlockSide) * kBlockSide + size_t(x % kBlockSide)] = weight;
     }
 
     std::vector<DabPiece> finish() const {
         std::vector<DabPiece> pieces;
-        for (const auto& [key, block] : blocks_)
-            if (std::optional<DabPiece> piece = make_piece(key, block)) pieces.push_back(std::move(*piece));
+        for (const auto& [key, block] : blocks_) pieces.push_back(make_piece(key, block));
         return pieces;
     }
 
   private:
     using Key = std::tuple<int, int, int>; ///< udim, row and column of the block
-    struct Block {
-        std::array<float, kBlockSide * kBlockSide> weights{}, shares{};
-    };
+    using Block = std::array<float, kBlockSide * kBlockSide>;
 
-    /// Negative: beyond the tile.
-    int wrap(int place, int size) const {
-        if (place >= 0 && place < size) return place;
-        if (map_.wrap != WrapMode::repeat || map_.is_udim) return -1;
-        return (place % size + size) % size;
-    }
-
-    void add_texel(int udim, int x, int y, float share, const Vec3f& position) {
-        if (x < 0 || y < 0) return;
-        const Key key{udim, y / kBlockSide, x / kBlockSide};
-        if (!last_ || key != last_key_) last_ = &blocks_[key], last_key_ = key;
-        const size_t place = size_t(y % kBlockSide) * kBlockSide + size_t(x % kBlockSide);
-        const Vec3f off = (position - centre_.position) * (1 / radius_);
-        last_->weights[place] += share * find_weight(dot(off, off));
-        last_->shares[place] += share;
-    }
-
-    static std::optional<DabPiece> make_piece(const Key& key, const Block& block) {
-        const auto [udim, row, column] = key;
+    static DabPiece make_piece(const Key& key, const Block& block) {
         TexelBox box{kBlockSide, kBlockSide, 0, 0};
         for (int y = 0; y < kBlockSide; ++y)
             for (int x = 0; x < kBlockSide; ++x)
-                if (block.weights[size_t(y * kBlockSide + x)] > 0)
+                if (block[size_t(y * kBlockSide + x)] > 0)
                     box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1),
                            std::max(box.y1, y + 1)};
-        if (box.is_empty()) return std::nullopt;
+        const auto [udim, row, column] = key;
         DabPiece piece{udim, box, {}};
         for (int y = box.y0; y < box.y1; ++y)
-            for (int x = box.x0; x < box.x1; ++x) {
-                const size_t place = size_t(y * kBlockSide + x);
-                piece.weights.push_back(block.weights[place] > 0 ? block.weights[place] / block.shares[place]
-                                                                 : 0);
-            }
+            for (int x = box.x0; x < box.x1; ++x) piece.weights.push_back(block[size_t(y * kBlockSide + x)]);
         const int left = column * kBlockSide, top = row * kBlockSide;
         piece.box = {box.x0 + left, box.y0 + top, box.x1 + left, box.y1 + top};
         return piece;
     }
 
-    const Displacement& map_;
-    const SurfacePoint& centre_;
-    float radius_;
     std::map<Key, Block> blocks_;
     Block* last_ = nullptr;
     Key last_key_;
@@ -265,16 +220,20 @@ class WeightSums {
 } // namespace
 
 std::vector<DabPiece> find_dab(const Scene& scene, const ShownPicture& picture, const SurfacePoint& centre,
-                               float radius) {
+                               float radius, const TexelPlaces& places) {
     const Displacement& map = scene.displacements[scene.objects[centre.object].displacement];
     const float radius_world = radius * centre.pixel_size;
     if (!(radius_world > 0)) return {};
-    WeightSums sums(map, centre, radius_world);
-    for (Sample sample : SampleReader(scene, picture, centre).read(radius_world)) {
-        if (!map.is_udim) sample.udim = map.tiles.front().udim;
-        sums.add(sample);
-    }
-    return sums.finish();
+    const std::vector<SeenTexel> seen = find_seen_texels(scene, picture, centre, radius_world);
+    if (seen.empty()) return {};
+    const auto middle = std::ranges::min_element(
+        seen, {}, [&](const SeenTexel& texel) { return length(texel.position - centre.position); });
+    Lattice lattice(map, places, *middle, radius_world);
+    for (const SeenTexel& texel : seen) lattice.add_seen(texel);
+    lattice.spread(kSlack * find_pixel_width(picture, centre));
+    PieceMaker pieces;
+    lattice.visit_texels([&](int udim, int x, int y, float weight) { pieces.add(udim, x, y, weight); });
+    return pieces.finish();
 }
 
 } // namespace relief::viewer

@@ -1,10 +1,11 @@
-// The texels that one dab of a brush changes: those whose surface is seen near the cursor.
+// The texels that one dab of a brush changes: those whose surface lies near the cursor.
 #pragma once
 
 #include <vector>
 
 #include "viewer/brush.h"
 #include "viewer/surface_point.h"
+#include "viewer/texel_places.h"
 
 namespace relief::viewer {
 
@@ -20,10 +21,10 @@ struct DabPiece {
 };
 
 /// Weights fall off with the distance in space between the surface of a texel and `centre`: from 1 there to 0
-/// at `radius` pixels of the whole picture, at the distance of the centre from the camera. Only what the
-/// picture shows of the object counts: nothing behind an overhang, and nothing on the far side of a thin
-/// body. A uv seam is no border.
+/// at `radius` pixels of the whole picture, at the distance of the centre from the camera. The dab begins
+/// with all that the picture shows there of the object, across seams of uvs, and goes on into what bumps
+/// hide, ever weaker away from what is seen. `places`: of the object.
 std::vector<DabPiece> find_dab(const Scene& scene, const ShownPicture& picture, const SurfacePoint& centre,
-                               float radius);
+                               float radius, const TexelPlaces& places);
 
 } // namespace relief::viewer

@@ -56,6 +56,12 @@ Texture& Painter::paint(const DabPiece& piece) {
     return document_.paint_tile(object().displacement, piece.udim);
 }
 
+std::vector<DabPiece> Painter::find_pieces(const ShownPicture& picture, const SurfacePoint& point) {
+    std::unique_ptr<TexelPlaces>& places = places_[point.object];
+    if (!places) places = std::make_unique<TexelPlaces>(document_.scene(), point.object);
+    return find_dab(document_.scene(), picture, point, brush_.radius, *places);
+}
+
 Vec3f Painter::find_step(const Vec3f& shift_world, const SurfacePoint& point, int udim) {
     const Displacement& displacement = map();
     if (displacement.space == DisplacementSpace::world && displacement.type == DisplacementType::vector)
@@ -124,7 +130,7 @@ void Painter::apply(const std::vector<DabPiece>& pieces, const SurfacePoint& poi
 void Painter::dab_at(const ShownPicture& picture, float x, float y) {
     const std::optional<SurfacePoint> point = find_surface_point(picture, x, y);
     if (!point || point->object != object_) return;
-    const std::vector<DabPiece> pieces = find_dab(document_.scene(), picture, *point, brush_.radius);
+    const std::vector<DabPiece> pieces = find_pieces(picture, *point);
     for (const DabPiece& piece : pieces)
         history_.keep({object().displacement, piece.udim}, paint(piece), piece.box);
     apply(pieces, *point);
@@ -170,7 +176,7 @@ std::vector<MapEdit> Painter::begin(const Brush& brush, const ShownPicture& pict
     }
     start_ = point;
     start_udim_ = find_udim(scene, *point);
-    grabbed_ = find_dab(scene, picture, *point, brush_.radius);
+    grabbed_ = find_pieces(picture, *point);
     for (const DabPiece& piece : grabbed_) {
         history_.keep({object().displacement, piece.udim}, paint(piece), piece.box);
         before_grab_.push_back(copy_texels(paint(piece), piece.box));
@@ -213,7 +219,7 @@ void Painter::end() {
 }
 
 SceneValue Painter::exchange(const SceneValue& value) {
-    if (std::holds_alternative<Displacement>(value.value)) frames_.clear(); // the space may be another
+    if (std::holds_alternative<Displacement>(value.value)) frames_.clear(), places_.clear(); // another space
     return document_.exchange(value);
 }
 

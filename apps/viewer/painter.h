@@ -41,12 +41,12 @@ class Painter {
     std::vector<MapEdit> undo();
     std::vector<MapEdit> redo();
     /// Of maps that were replaced nothing can be taken back.
-    void forget() { history_.clear(), frames_.clear(); }
+    void forget() { history_.clear(), frames_.clear(), places_.clear(); }
     /// Of the environment and lights that were replaced.
     void forget_lighting() { history_.forget_lighting(); }
     /// Meshes were replaced, and values have followed their keys.
     void follow_frame() {
-        frames_.clear();
+        frames_.clear(), places_.clear();
         history_.change_values([&](SceneValue& value) { document_.follow_frame(value); });
     }
 
@@ -55,6 +55,7 @@ class Painter {
     const Displacement& map() const { return document_.scene().displacements[object().displacement]; }
     void dab_at(const ShownPicture& picture, float x, float y);
     Texture& paint(const DabPiece& piece);
+    std::vector<DabPiece> find_pieces(const ShownPicture& picture, const SurfacePoint& point);
     /// What a shift of the surface in the world adds to values of the map.
     Vec3f find_step(const Vec3f& shift_world, const SurfacePoint& point, int udim);
     void apply(const std::vector<DabPiece>& pieces, const SurfacePoint& point);
@@ -68,6 +69,7 @@ class Painter {
     StrokeHistory history_;
     /// By displacement, mesh and whether rows go along v.
     std::map<std::tuple<uint32_t, uint32_t, bool>, std::unique_ptr<TexelFrames>> frames_;
+    std::map<uint32_t, std::unique_ptr<TexelPlaces>> places_; ///< by object
     Brush brush_;
     uint32_t object_ = kNoIndex; ///< that a stroke is on; none: no stroke
     Vec2f last_{};               ///< pixels of the whole picture

@@ -66,7 +66,7 @@ RenderSettings make_settings(int spp) {
 std::vector<DabPiece> find_dab_at(const Scene& scene, const ShownPicture& picture, float x, float radius) {
     const auto centre = find_surface_point(picture, x, 80.5f);
     if (!centre) return {};
-    return find_dab(scene, picture, *centre, radius);
+    return find_dab(scene, picture, *centre, radius, TexelPlaces(scene, 0));
 }
 
 } // namespace
@@ -84,7 +84,8 @@ TEST(Dab, reaches_no_further_than_its_radius_in_space) {
                 if (find_distance_to_surface(centre->position) > 0.5f * centre->pixel_size) continue;
                 ++centres;
                 float farthest = 0, largest = 0;
-                const std::vector<DabPiece> pieces = find_dab(scene, picture, *centre, radius);
+                const std::vector<DabPiece> pieces =
+                    find_dab(scene, picture, *centre, radius, TexelPlaces(scene, 0));
                 for (const DabPiece& piece : pieces)
                     largest = std::max(largest, *std::ranges::max_element(piece.weights));
                 EXPECT_GT(largest, 0.7f) << spp << ' ' << radius << ' ' << x;
@@ -107,7 +108,7 @@ TEST(Dab, has_no_holes_where_the_surface_is_seen) {
         ASSERT_TRUE(centre);
         constexpr float kRadius = 20;
         std::vector<float> weights(size_t(kSide) * kSide);
-        for (const DabPiece& piece : find_dab(scene, picture, *centre, kRadius))
+        for (const DabPiece& piece : find_dab(scene, picture, *centre, kRadius, TexelPlaces(scene, 0)))
             for (int y = piece.box.y0; y < piece.box.y1; ++y)
                 for (int x = piece.box.x0; x < piece.box.x1; ++x)
                     weights[size_t(y) * kSide + size_t(x)] = piece.weight(x, y);
