@@ -54,6 +54,7 @@ DECLARED = {
     "numeric": "accumulate gcd iota partial_sum reduce",
     "optional": "nullopt optional",
     "ostream": "endl flush ios ostream streamoff streamsize",
+    "queue": "priority_queue queue",
     "random": "mt19937 mt19937_64 normal_distribution random_device uniform_int_distribution uniform_real_distribution",
     "regex": "regex regex_search smatch sregex_iterator",
     "set": "multiset set",
