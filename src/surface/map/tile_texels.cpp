@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/map/mip_chain.h"
 #include "surface/map/texels.h"
 #include "surface/map/wrapped_range.h"
 
 namespace relief {
 
 namespace {
+
+/// Unlike DisplacementMap::image(), also of maps whose bounds are not made yet.
+const Texture& get_texture(const DisplacementMap& map, uint8_t tile, uint32_t mip) {
+    const DisplacementMap::Tile& own = map.tiles[tile];
+    return mip == 0 || !own.mips ? *own.texture : *own.mips->copy(mip).texture;
+}
 
 constexpr size_t kLeft = 0, kRight = 1, kAbove = 2, kBelow = 3; ///< entries of TileNeighbours
 
@@ -69,7 +76,7 @@ class RangeFinder {
         ranges.is_outside_read |= x.is_outside_read || y.is_outside_read || !is_near_tile(first.x, width_) ||
                                   !is_near_tile(right, width_) || !is_near_tile(first.y, height_) ||
                                   !is_near_tile(bottom, height_);
-        const Texture& image = map_.image(first.tile, mip_).texture;
+        const Texture& image = get_texture(map_, first.tile, mip_);
         for (int j = 0; j < y.count; ++j)
             for (int i = 0; i < x.count; ++i) {
                 const auto across = scale_range(x.parts[size_t(i)], width_, image.width),
@@ -101,14 +108,14 @@ TilePlace find_tile_place(const DisplacementMap& map, uint8_t tile, int64_t x, i
 
 std::array<float, 4> read_place(const DisplacementMap& map, uint32_t mip, const TilePlace& place,
                                 int64_t width, int64_t height) {
-    const Texture& image = map.image(place.tile, mip).texture;
+    const Texture& image = get_texture(map, place.tile, mip);
     return read_between(image, find_between(place.x, width, image.width),
                         find_between(place.y, height, image.height));
 }
 
 std::array<float, 4> read_beyond_tile(const DisplacementMap& map, uint8_t tile, uint32_t mip, int64_t x,
                                       int64_t y) {
-    const Texture& home = map.image(tile, mip).texture;
+    const Texture& home = get_texture(map, tile, mip);
     const int64_t width = home.width, height = home.height;
     const TilePlace place = find_tile_place(map, tile, x, y, width, height);
     int64_t column = place.x, row = place.y;
@@ -124,14 +131,14 @@ std::array<float, 4> read_beyond_tile(const DisplacementMap& map, uint8_t tile, 
 TileRanges find_tile_ranges(const DisplacementMap& map, uint8_t tile, uint32_t mip,
                             const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows) {
     constexpr int64_t kMostCells = 8; // per axis; for larger rectangles all tiles count
-    const Texture& home = map.image(tile, mip).texture;
+    const Texture& home = get_texture(map, tile, mip);
     const int64_t width = home.width, height = home.height;
     const int64_t left = floor_divide(columns[0], width), right = floor_divide(columns[1], width),
                   top = floor_divide(rows[0], height), bottom = floor_divide(rows[1], height);
     TileRanges ranges;
     if ((right - left + 1) > kMostCells || (bottom - top + 1) > kMostCells) {
         for (size_t k = 0; k < map.tiles.size(); ++k) {
-            const Texture& image = map.image(uint8_t(k), mip).texture;
+            const Texture& image = get_texture(map, uint8_t(k), mip);
             ranges.parts.push_back({uint8_t(k), {0, 0, image.width - 1, image.height - 1}});
         }
         ranges.is_outside_read = true;
