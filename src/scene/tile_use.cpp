@@ -17,10 +17,12 @@ namespace {
 constexpr double kUvRounding = 1e-5; ///< that files with few digits bring with them
 constexpr double kMostSquares = 64;  ///< per axis: a face across more of them is no picture of any
 
-/// First and last square of an axis between two coordinates.
+/// First and last square of an axis between two coordinates. Beyond a million there is no tile, and further
+/// out a number plus 1 would be the same number, so that loops over squares would not end.
 std::pair<double, double> find_squares(double low, double high, double middle) {
+    const auto clip = [](double square) { return std::clamp(square, -1e6, 1e6); };
     const double first = std::floor(low + kUvRounding), last = std::ceil(high - kUvRounding) - 1;
-    return first <= last ? std::pair(first, last) : std::pair(middle, middle);
+    return first <= last ? std::pair(clip(first), clip(last)) : std::pair(clip(middle), clip(middle));
 }
 
 std::string count_faces(size_t count, const char* verb, const char* plural_verb) {

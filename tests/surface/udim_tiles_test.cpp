@@ -1,6 +1,9 @@
 // Tiles of UDIM maps beside each other: what filters read across their borders, and faces across several.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "scene/tile_use.h"
 #include "surface/map/tile_texels.h"
 #include "surface/test_scenes.h"
 
@@ -48,6 +51,20 @@ TEST(UdimTiles, continue_each_other_where_the_mesh_goes_on) {
             for (float x = 0.75f; x <= 1.25f; x += 1.0f / 32)
                 EXPECT_NEAR(find_height(surface, x), x, 2e-6f) << x << " filter " << int(filter);
         }
+}
+
+/// A number as large plus 1 is the same number, so that a loop over squares would not end.
+TEST(UdimTiles, faces_far_away_in_uv_have_no_tile) {
+    const Displacement displacement = make_tiles({{1001, make_ramp(4, 1, 2)}});
+    for (const float far : {1e5f, 1e7f, 1e17f, 1e30f, -1e30f}) {
+        Mesh mesh = make_two_quads();
+        for (Vec2f& uv : mesh.uvs) uv = {uv.x * 0.5f, uv.y + far};
+        const TileUse use = find_tile_use(mesh);
+        EXPECT_EQ(use.outside, 2u) << far;
+        EXPECT_TRUE(use.tiles.empty()) << far;
+        if (std::fabs(far) < 1e6f) // others are refused
+            EXPECT_EQ(find_height(make_surface(mesh, &displacement, {}), 0.5f), 0);
+    }
 }
 
 TEST(UdimTiles, continue_each_other_along_v_as_well) {
