@@ -157,7 +157,7 @@ int convert_map_file(const ConvertOptions& options) {
     return kExitDone;
 }
 
-/// What render warns of and shows in the written surface as well.
+/// Adds the warnings of a render that concern the written surface, too.
 Scene add_edge_warnings(Scene scene) {
     for (std::string& warning : find_edge_warnings(scene)) scene.warnings.push_back(std::move(warning));
     return scene;

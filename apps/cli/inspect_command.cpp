@@ -89,7 +89,7 @@ std::string describe_layer(const PicturePart::Layer& layer) {
     return text;
 }
 
-/// What an EXR file holds, a fact per part.
+/// Adds one fact per part of an EXR file: its windows and layers.
 void add_parts(const std::string& file, Inspection& inspection) {
     const std::vector<PicturePart> parts = list_picture_parts(file);
     for (size_t k = 0; k < parts.size(); ++k) {
@@ -158,7 +158,7 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
         std::find_if(inspection.findings.begin(), inspection.findings.end(), stands_in_the_way);
     if (found != inspection.findings.end())
         throw Error(ErrorKind::bad_input, {found->text, options.file, "no check picture can be made"});
-    // As a render reads it, not as it looks like.
+    // The picture shows the map as a render reads it, whatever its values look like.
     const Scene scene = mesh ? make_mesh_scene(std::move(*mesh), &map) : make_map_scene(map);
     write_check_picture(scene, make_check_settings(), options, progress);
     return inspection;

@@ -42,7 +42,8 @@ void add_options_of_view(CLI::App& app) {
     app.final_callback([options] {});
 }
 
-/// What --help and --version of a program print, which need no program. nullopt: the words are other ones.
+/// Prints the help or the version of a program, neither of which needs the program. Returns nullopt if the
+/// words ask for something else.
 std::optional<int> answer_without(const Program& program, const std::vector<std::string>& words) {
     CLI::App app(program.description, program.command);
     prepare_parsing(app);

@@ -43,7 +43,7 @@ std::string name_keys_of(std::string_view section, std::string text) {
     return text;
 }
 
-/// As under 'displacements' and 'meshes'.
+/// Writes keys as they stand under 'displacements' and 'meshes' of a scene file.
 std::string name_keys(std::string text) {
     if (text.find("mesh.weld = ") != std::string::npos) text = name_keys_of("mesh.", std::move(text));
     return name_keys_of("displacement.", std::move(text));

@@ -52,7 +52,7 @@ bool are_equal(const std::string& a, const std::string& b) {
     return difference == 0;
 }
 
-/// Of "NAME" and "NAME:PORT". The port may be that of a tunnel.
+/// Whether "NAME" or "NAME:PORT" means this machine. Any port is accepted, since a tunnel has one of its own.
 bool is_this_machine(const std::string& host) {
     constexpr std::array<std::string_view, 3> kNames = {"127.0.0.1", "localhost", "[::1]"};
     return std::ranges::any_of(kNames, [&](std::string_view name) {

@@ -32,7 +32,8 @@ namespace {
 using State = BrowserConnection::State;
 using Bytes = std::shared_ptr<const std::vector<uint8_t>>;
 
-constexpr int kPatience = 10; ///< seconds after which a browser that waits for a picture is told to ask again
+constexpr int kPatience =
+    10; ///< seconds after which the answer to a browser that waits for a picture is to ask again
 constexpr size_t kMostConnections =
     256; ///< one more ends the one that has been silent, or waiting, for longest
 constexpr int kRoundMilliseconds = 250; ///< after which deadlines are looked at
@@ -150,7 +151,8 @@ struct BrowserServer::Implementation {
         }
     }
 
-    /// Those without a request go first, then those that wait for a picture, then pages.
+    /// Ends one connection: without a request if there is one, else one that waits for a picture, else a
+    /// page.
     void end_oldest() {
         const auto oldest = std::ranges::min_element(
             connections, {}, [](const BrowserConnection& c) { return std::pair(c.state, c.begin); });
@@ -196,7 +198,7 @@ struct BrowserServer::Implementation {
         c.change(State::listening, 0);
     }
 
-    /// Where the picture is newer than the one that the browser has.
+    /// Sends the picture if it is newer than the one that the browser has.
     void answer_picture(BrowserConnection& c) {
         Bytes shown;
         std::string more;

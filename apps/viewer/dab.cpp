@@ -54,7 +54,7 @@ class Lattice {
     Lattice(const Displacement& map, const TexelPlaces& places, const SeenTexel& middle, float radius)
         : map_(map), places_(places), centre_(middle.position), radius_(radius) {
         choose_step(middle);
-        // Of the map as it is now, like all other places.
+        // The picture may be older than the map, which all other places come from.
         const auto place = find_place({middle.udim, int(middle.column) / step_, int(middle.row) / step_});
         if (place && length(*place - centre_) < kStale * radius_) centre_ = *place;
     }

@@ -25,8 +25,8 @@ class TileFinder {
 
     const Displacement& map() const { return map_; }
 
-    /// That of the last pixel where uvs go on from there; else it is looked for among all faces. Null: the
-    /// map has none there.
+    /// Finds the tile that a pixel shows. If uvs go on from the last pixel it is the tile of that pixel;
+    /// otherwise all faces are searched. Null: the map has no tile there.
     const MapTile* find(int x, int y, const Vec2f& uv, const Vec3f& position) {
         if (!map_.is_udim) return &map_.tiles.front();
         const bool goes_on =

@@ -26,7 +26,8 @@ AxisMap draw_axes(std::mt19937& random) {
     return axes;
 }
 
-/// The channel along the normal with its sign, and the other two but for turns by quarters.
+/// Whether the channel along the normal and its sign are equal, and the other two differ by quarters of a
+/// turn.
 bool are_turned(AxisMap a, const AxisMap& b) {
     for (int turn = 0; turn < 4; ++turn) {
         if (a == b) return true;

@@ -135,7 +135,7 @@ def check_refusals(url):
 
 
 def check_crowds(url):
-    """Connections that say nothing, requests that wait, and answers that nobody reads keep no page from being answered."""
+    """The page is answered beside silent connections, requests that wait, and answers that nobody reads."""
     page = Page(url)
     page.last_picture("4 of 4")
     crowd = [socket.create_connection(("127.0.0.1", page.port), timeout=PATIENCE) for _ in range(500)]

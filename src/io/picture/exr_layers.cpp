@@ -139,7 +139,7 @@ class Chooser {
         refuse("layer", choice_.layer);
     }
 
-    /// All that `chosen` leaves out, but for alpha.
+    /// Lists all layers and channels that `chosen` leaves out, except alpha.
     std::vector<std::string> list_rest(const Chosen& chosen) const {
         std::vector<std::string> rest;
         for (size_t part = 0; part < parts_.size(); ++part)

@@ -6,8 +6,8 @@
 
 namespace relief {
 
-/// Whether a JPEG stream gets to the marker that ends its picture: for a file that is cut before it the
-/// decoder makes up the rest, and says nothing. Among coded samples a byte ff is followed by 00 or a restart
+/// Whether a JPEG stream gets to the marker that ends its picture: the decoder makes up the rest of a file
+/// that is cut before it, without an error. Among coded samples a byte ff is followed by 00 or a restart
 /// marker (ISO 10918-1, B.1.1.5), all other segments have their length (B.1.1.4).
 inline bool has_jpeg_end(std::istream& stream) {
     constexpr int kFirstRestart = 0xd0, kStart = 0xd8, kEnd = 0xd9, kTemporary = 0x01;

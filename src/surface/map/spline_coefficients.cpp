@@ -50,8 +50,8 @@ int64_t find_reach(const SplineForm& form) {
     return (form.is_interpolating ? kReach : 0) + (form.is_dequantized ? get_dequantization_reach() : 0);
 }
 
-/// Values of other tiles outside of the image; the rest of the plane, which continues the image, stays. A
-/// tile that ends on the way is continued as load_plane() continues an image, but for WrapMode::black.
+/// Loads values of other tiles outside of the image; the rest of the plane, which continues the image, stays.
+/// A tile that ends on the way is continued as load_plane() continues an image, except with WrapMode::black.
 void load_other_tiles(const Texture& texels, const TileSurroundings& surroundings, size_t channel,
                       TexelPlane& plane) {
     const int64_t width = texels.width, height = texels.height;
