@@ -17,6 +17,7 @@
 #include <fmt/ranges.h>
 
 #include "io/picture/exr_pixels.h"
+#include "io/picture/exr_reading.h"
 #include "io/picture/exr_stream.h"
 #include "io/picture/exr_threads.h"
 #include "io/picture/picture_error.h"
@@ -64,13 +65,7 @@ std::vector<Layer> list_layers(const Imf::ChannelList& channels) {
 PicturePart make_part(const Imf::Header& header) {
     PicturePart part;
     if (header.hasName()) part.name = header.name();
-    const Imath::Box2i &data = header.dataWindow(), &display = header.displayWindow();
-    part.x = data.min.x, part.y = data.min.y;
-    part.width = count_exr_pixels(data.min.x, data.max.x),
-    part.height = count_exr_pixels(data.min.y, data.max.y);
-    part.full_x = display.min.x, part.full_y = display.min.y;
-    part.full_width = count_exr_pixels(display.min.x, display.max.x);
-    part.full_height = count_exr_pixels(display.min.y, display.max.y);
+    set_exr_windows(header, part);
     part.layers = list_layers(header.channels());
     part.is_deep = header.hasType() && Imf::isDeepData(header.type());
     return part;

@@ -1,4 +1,5 @@
 #include "io/picture/exr_pixels.h"
+#include "io/picture/exr_reading.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -25,33 +26,16 @@ namespace {
 
 PixelHeader make_header(const Imf::Header& exr, std::vector<std::string> channels, bool is_half) {
     PixelHeader header;
-    const Imath::Box2i &data = exr.dataWindow(), &display = exr.displayWindow();
-    header.x = data.min.x, header.y = data.min.y;
-    header.width = count_exr_pixels(data.min.x, data.max.x);
-    header.height = count_exr_pixels(data.min.y, data.max.y);
-    header.full_x = display.min.x, header.full_y = display.min.y;
-    header.full_width = count_exr_pixels(display.min.x, display.max.x);
-    header.full_height = count_exr_pixels(display.min.y, display.max.y);
+    set_exr_windows(exr, header);
     header.type = is_half ? SampleType::float16 : SampleType::float32;
     header.pixel_bytes = channels.size() * (is_half ? 2 : 4);
     header.channels = std::move(channels);
     return header;
 }
 
-/// Calls `work` and says of whatever OpenEXR throws that the file is damaged.
-template <class Work> void read_pixels(const std::string& name, const Work& work) {
-    try {
-        work();
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {
-        fail_damaged(name, fmt::format("cannot be read: {}", error.what()));
-    }
-}
-
 } // namespace
 
-class ExrLayerSource final : public PixelSource {
+class ExrLayerSource final : public ExrPixelSource<Imf::InputPart> {
   public:
     ExrLayerSource(std::unique_ptr<ExrParts> parts, int part, std::vector<std::string> channels)
         : parts_(std::move(parts)), part_(parts_->file_, part) {
@@ -68,31 +52,12 @@ class ExrLayerSource final : public PixelSource {
         header_ = make_header(part_.header(), std::move(channels), is_half);
     }
 
-    const PixelHeader& header() const override { return header_; }
-    void read_floats(int channel_count, size_t stride, float* values) override {
-        read(Imf::FLOAT, channel_count, stride * sizeof(float), sizeof(float), values);
-    }
-    void read_halves(int channel_count, size_t stride, uint16_t* values) override {
-        read(Imf::HALF, channel_count, stride * sizeof(uint16_t), sizeof(uint16_t), values);
-    }
-
   private:
-    void read(Imf::PixelType type, int channel_count, size_t stride_bytes, size_t value_bytes, void* values) {
-        read_pixels(parts_->name_, [&] {
-            Imf::FrameBuffer buffer;
-            const Imath::Box2i& window = part_.header().dataWindow();
-            for (int c = 0; c < channel_count; ++c)
-                buffer.insert(header_.channels[size_t(c)],
-                              Imf::Slice::Make(type, static_cast<char*>(values) + size_t(c) * value_bytes,
-                                               window, stride_bytes, stride_bytes * size_t(header_.width)));
-            part_.setFrameBuffer(buffer);
-            part_.readPixels(window.min.y, window.max.y);
-        });
-    }
+    Imf::InputPart& file() override { return part_; }
+    const std::string& name() const override { return parts_->name_; }
 
     std::unique_ptr<ExrParts> parts_;
     Imf::InputPart part_;
-    PixelHeader header_;
 };
 
 namespace {
@@ -118,7 +83,7 @@ class ExrChromaSource final : public PixelSource {
 
   private:
     template <class Store> void read(int channel_count, const Store& store) {
-        read_pixels(name_, [&] {
+        read_exr(name_, [&] {
             const Imath::Box2i& window = file_.dataWindow();
             const auto width = size_t(header_.width);
             std::vector<Imf::Rgba> row(width);

@@ -18,6 +18,7 @@
 
 #include "io/picture/exr_names.h"
 #include "io/picture/exr_pixels.h"
+#include "io/picture/exr_reading.h"
 #include "io/picture/exr_stream.h"
 #include "io/picture/exr_threads.h"
 #include "io/picture/picture_error.h"
@@ -72,13 +73,7 @@ std::optional<std::vector<std::string>> order_channels(const Imf::ChannelList& c
 
 PixelHeader make_header(const Imf::Header& exr, std::vector<std::string> channels) {
     PixelHeader header;
-    const Imath::Box2i &data = exr.dataWindow(), &display = exr.displayWindow();
-    header.x = data.min.x, header.y = data.min.y;
-    header.width = count_exr_pixels(data.min.x, data.max.x),
-    header.height = count_exr_pixels(data.min.y, data.max.y);
-    header.full_x = display.min.x, header.full_y = display.min.y;
-    header.full_width = count_exr_pixels(display.min.x, display.max.x);
-    header.full_height = count_exr_pixels(display.min.y, display.max.y);
+    set_exr_windows(exr, header);
     const bool is_half = !channels.empty() && exr.channels()[channels.front()].type == Imf::HALF;
     header.type = is_half ? SampleType::float16 : SampleType::float32;
     header.pixel_bytes = channels.size() * (is_half ? 2 : 4);
@@ -90,7 +85,7 @@ PixelHeader make_header(const Imf::Header& exr, std::vector<std::string> channel
     return header;
 }
 
-class ExrSource final : public PixelSource {
+class ExrSource final : public ExrPixelSource<Imf::InputFile> {
   public:
     ExrSource(std::unique_ptr<std::istream> stream, const std::string& name)
         : name_(name), stream_(std::move(stream), name), file_(stream_, prepare_exr_threads()) {
@@ -101,36 +96,14 @@ class ExrSource final : public PixelSource {
     }
 
     bool is_plain() const { return is_plain_; }
-    const PixelHeader& header() const override { return header_; }
-    void read_floats(int channel_count, size_t stride, float* values) override {
-        read(Imf::FLOAT, channel_count, stride * sizeof(float), sizeof(float), values);
-    }
-    void read_halves(int channel_count, size_t stride, uint16_t* values) override {
-        read(Imf::HALF, channel_count, stride * sizeof(uint16_t), sizeof(uint16_t), values);
-    }
 
   private:
-    void read(Imf::PixelType type, int channel_count, size_t stride_bytes, size_t value_bytes, void* values) {
-        try {
-            Imf::FrameBuffer buffer;
-            const Imath::Box2i& window = file_.header().dataWindow();
-            for (int c = 0; c < channel_count; ++c)
-                buffer.insert(header_.channels[size_t(c)],
-                              Imf::Slice::Make(type, static_cast<char*>(values) + size_t(c) * value_bytes,
-                                               window, stride_bytes, stride_bytes * size_t(header_.width)));
-            file_.setFrameBuffer(buffer);
-            file_.readPixels(window.min.y, window.max.y);
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const std::exception& error) {
-            fail_damaged(name_, fmt::format("cannot be read: {}", error.what()));
-        }
-    }
+    Imf::InputFile& file() override { return file_; }
+    const std::string& name() const override { return name_; }
 
     std::string name_;
     ExrInputStream stream_;
     Imf::InputFile file_;
-    PixelHeader header_;
     bool is_plain_ = false;
 };
 
