@@ -41,19 +41,6 @@ const BounceCase kBounceCases[] = {
     {"long_sphere_object_auto", {1, 1, 1000}, 4, DisplacementSpace::object, kAutoLevel, true},
 };
 
-struct Random {
-    uint64_t state;
-    float uniform() {
-        state = state * 6364136223846793005ull + 1442695040888963407ull;
-        return float(state >> 40) * 0x1p-24f;
-    }
-    Vec3f direction() {
-        const float z = 2 * uniform() - 1, angle = 6.2831853f * uniform(),
-                    r = std::sqrt(std::fmax(0.0f, 1 - z * z));
-        return {r * std::cos(angle), r * std::sin(angle), z};
-    }
-};
-
 Scene make_scene(const BounceCase& c) {
     Mesh mesh = test::make_cube_sphere(c.faces);
     for (Vec3f& p : mesh.positions) p = p * c.size;
@@ -75,7 +62,7 @@ class BounceLeaks {
           exact_(*prepared_) {}
 
     void trace_batch(uint64_t batch, Misses& misses) const {
-        Random random{batch * 0x9e3779b97f4a7c15ull + 1};
+        test::LeakRandom random{batch * 0x9e3779b97f4a7c15ull + 1};
         std::vector<cpu::TraceRay> rays(kRaysPerBatch);
         std::vector<cpu::TraceHit> hits(kRaysPerBatch);
         for (cpu::TraceRay& ray : rays) {
@@ -95,12 +82,13 @@ class BounceLeaks {
     }
 
   private:
-    static float choose_length(Random& random) {
+    static float choose_length(test::LeakRandom& random) {
         constexpr float kLengths[] = {1, 1, 1e12f, 1e-12f};
         return kLengths[size_t(4 * random.uniform()) & 3];
     }
 
-    cpu::TraceRay bounce_off(const cpu::TraceRay& ray, const cpu::TraceHit& hit, Random& random) const {
+    cpu::TraceRay bounce_off(const cpu::TraceRay& ray, const cpu::TraceHit& hit,
+                             test::LeakRandom& random) const {
         const cpu::SurfacePoint point = tracer_.make_surface_point(hit);
         const bool is_behind = dot(point.geometric_normal, ray.direction) > 0;
         const Vec3f inside = is_behind ? -point.geometric_normal : point.geometric_normal;

@@ -117,28 +117,15 @@ const LeakCase kLeakCases[] = {
      Uvs::in_two_tiles, BaseLevels::automatic},
 };
 
-/// Small, fast, seeded by the batch, so that a leak can be found again.
-struct Random {
-    uint64_t state;
-    float uniform() {
-        state = state * 6364136223846793005ull + 1442695040888963407ull;
-        return float(state >> 40) * 0x1p-24f;
-    }
-    Vec3f direction() {
-        const float z = 2 * uniform() - 1, angle = 6.2831853f * uniform(),
-                    r = std::sqrt(std::fmax(0.0f, 1 - z * z));
-        return {r * std::cos(angle), r * std::sin(angle), z};
-    }
-};
-
-Vec3f make_inner_point(Body body, Random& random) {
+Vec3f make_inner_point(Body body, test::LeakRandom& random) {
     if (body != Body::torus) return random.direction() * (0.3f * random.uniform());
     const float angle = 6.2831853f * random.uniform();
     return Vec3f{std::cos(angle), 0, -std::sin(angle)} + random.direction() * (0.1f * random.uniform());
 }
 
 /// A vertex of the micro-mesh, or a point of one of its edges, in world space.
-Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t bias, Random& random) {
+Vec3f make_target(const PreparedScene& scene, const Instance& instance, uint32_t bias,
+                  test::LeakRandom& random) {
     const Surface& surface = scene.surfaces[instance.surface];
     const uint32_t patch = uint32_t(random.uniform() * float(surface.patch_count()));
     const PatchLevels levels = instance.levels->at(patch).biased(bias);
@@ -213,7 +200,7 @@ uint64_t count_leaks(const PreparedScene& prepared, const cpu::Tracer& tracer, B
         std::vector<cpu::TraceRay> rays(kRaysABatch);
         std::vector<cpu::TraceHit> hits(kRaysABatch);
         for (size_t batch = first_batch + begin; batch < first_batch + end; ++batch) {
-            Random random{batch * 0x9e3779b97f4a7c15ull + 1};
+            test::LeakRandom random{batch * 0x9e3779b97f4a7c15ull + 1};
             for (size_t k = 0; k < kRaysABatch; ++k) {
                 const Instance& instance = prepared.instances[batch % prepared.instances.size()];
                 rays[k].lod_bias = uint32_t(k / 1024);
@@ -268,7 +255,7 @@ TEST(MotionLeak, every_ray_from_inside_hits_at_any_time) {
     const RenderSettings settings = make_leak_settings(kAutoLevel);
     SceneEditor editor(start, settings, SessionUse::scenes);
     cpu::Tracer tracer(editor.scene(), settings);
-    Random random{7};
+    test::LeakRandom random{7};
     const uint64_t batches = (test::leak_ray_count() / kTimes + kRaysABatch - 1) / kRaysABatch;
     uint64_t leaks = 0;
     for (uint64_t time = 0; time < kTimes; ++time) {

@@ -48,10 +48,8 @@ inline Mesh make_icosphere(int splits) {
     return mesh;
 }
 
-/// About a sphere, of a cube with rounded normals, smooth through its patches; a map that displaces nothing.
-inline Scene make_displaced_sphere() {
-    Mesh mesh = make_cube_sphere(1);
-    mesh.subdivision.scheme = SubdivisionScheme::catmark, mesh.subdivision.level = 1;
+/// A matte body with a map of 4 x 4 texels that displaces nothing.
+inline Scene displace_by_nothing(Mesh mesh) {
     auto map = std::make_shared<Texture>();
     map->width = map->height = 4, map->channel_count = 3, map->source_type = SampleType::float32;
     map->floats.assign(4 * 16, 0.0f);
@@ -61,18 +59,19 @@ inline Scene make_displaced_sphere() {
     return scene;
 }
 
+/// About a sphere, of a cube with rounded normals, smooth through its patches; a map that displaces nothing.
+inline Scene make_displaced_sphere() {
+    Mesh mesh = make_cube_sphere(1);
+    mesh.subdivision.scheme = SubdivisionScheme::catmark, mesh.subdivision.level = 1;
+    return displace_by_nothing(std::move(mesh));
+}
+
 /// A coarse sphere whose faces stay flat, and a map that displaces nothing.
 inline Scene make_flat_displaced(Mesh mesh, SubdivisionScheme scheme) {
     mesh.subdivision.scheme = scheme, mesh.subdivision.level = 2;
     mesh.uvs.assign(1, {0.5f, 0.5f});
     mesh.uv_indices.assign(mesh.position_indices.size(), 0);
-    auto map = std::make_shared<Texture>();
-    map->width = map->height = 4, map->channel_count = 3, map->source_type = SampleType::float32;
-    map->floats.assign(4 * 16, 0.0f);
-    Scene scene = make_body_scene(std::move(mesh), make_displacement(map, DisplacementSpace::object));
-    scene.materials.push_back(make_matte(0.8f));
-    scene.objects[0].material = 0;
-    return scene;
+    return displace_by_nothing(std::move(mesh));
 }
 
 /// Unit sphere of quads, 6 * 4^splits of them.
