@@ -1,6 +1,7 @@
 // Conventions of maps, assumed or declared, compared with what their values look like.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "analysis/map_convention.h"
 #include "analysis/map_statistics.h"
 #include "analysis/mesh_statistics.h"
+#include "base/parallel.h"
 #include "image/texel_layout.h"
 #include "inspect/facts.h"
 #include "inspect/map_mistakes.h"
@@ -165,17 +167,20 @@ void check_values(const Displacement& map, const Mesh& mesh, std::vector<Finding
 
 std::vector<Finding> check_map(const Displacement& map, const Scene& scene,
                                const std::set<uint32_t>& meshes) {
-    std::vector<Finding> findings;
+    std::vector<Finding> findings, of_values;
     if (!has_all_textures(map)) return findings;
-    size_t count = 0;
-    for (const uint32_t index : meshes) {
-        if (map.assumed == AssumedConvention{}) break;
-        const Mesh& mesh = scene.meshes.at(index);
-        add_range(map, mesh, findings);
-        add_mesh_doubts(map, mesh, findings);
-        if (++count <= kMostOverlapMeshes) add_overlap(map, mesh, findings);
-    }
-    check_values(map, scene.meshes.at(*meshes.begin()), findings);
+    const auto check_meshes = [&] {
+        size_t count = 0;
+        for (const uint32_t index : meshes) {
+            if (map.assumed == AssumedConvention{}) break;
+            const Mesh& mesh = scene.meshes.at(index);
+            add_range(map, mesh, findings);
+            add_mesh_doubts(map, mesh, findings);
+            if (++count <= kMostOverlapMeshes) add_overlap(map, mesh, findings);
+        }
+    };
+    parallel_invoke(check_meshes, [&] { check_values(map, scene.meshes.at(*meshes.begin()), of_values); });
+    std::ranges::move(of_values, std::back_inserter(findings));
     return findings;
 }
 

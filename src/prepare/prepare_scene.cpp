@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -149,7 +150,10 @@ std::vector<SurfaceChange> prepare_parts(Scene& scene, const RenderSettings& set
         if (same.meshes[k]) parts.taken_off[k] = before->taken_off[same.old_meshes[k]];
     parts.surfaces = list.numbers, parts.has_old_numbers = same.has_old_numbers();
     MeshLimits limits(scene.meshes);
-    prepare_maps(scene, same, before, limits, parts.prepared);
+    std::vector<std::string> edge_warnings;
+    parallel_invoke([&] { prepare_maps(scene, same, before, limits, parts.prepared); },
+                    [&] { edge_warnings = find_edge_warnings(scene); });
+    std::ranges::move(edge_warnings, std::back_inserter(prepared.warnings));
     limits.release_outlines();
     std::vector<SurfaceChange> changes = make_surfaces(scene, list, same, before, polygons, limits, parts);
     if (polygons == Polygonal::keep_for_views) keep_conventions(scene, parts);

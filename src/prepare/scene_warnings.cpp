@@ -120,7 +120,6 @@ std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSett
         warnings.push_back(fmt::format("image.noise is judged after {} samples, and pixels get {} at most",
                                        ImageSettings::kLeastNoiseSamples, image.spp));
     warn_of_darkness(scene, warnings);
-    for (std::string& warning : find_edge_warnings(scene)) warnings.push_back(std::move(warning));
     std::set<std::pair<uint32_t, uint32_t>> pairs;
     std::set<uint32_t> meshes, read_meshes;
     std::set<std::pair<uint32_t, int>> read_sets;

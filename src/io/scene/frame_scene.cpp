@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/parallel.h"
 #include "io/scene/surface_samples.h"
 #include "math/affine.h"
 
@@ -46,33 +47,70 @@ std::array<Vec3f, 8> get_corners(const Box& box) {
     return corners;
 }
 
-enum class Part { bare, displaced };
-
-/// Points of the world on all objects: of the bare meshes, or of the displaced samples alone.
-void visit_objects(const std::vector<Shape>& shapes, Part part, const VisitPoint& visit) {
+/// Calls `visit` with the corners of all faces in the world.
+template <class Visit> void visit_bare(const std::vector<Shape>& shapes, const Visit& visit) {
     for (const Shape& shape : shapes) {
-        if (part == Part::displaced && !shape.map) continue;
-        const auto visit_shape = [&](const Affine& object_from_world, double share,
-                                     const VisitPoint& visit_one) {
-            if (part == Part::bare)
-                visit_corners(*shape.mesh, visit_one);
+        const Mesh& mesh = *shape.mesh;
+        Box box;
+        if (shape.objects.size() > kFewCopies)
+            for (const uint32_t index : mesh.position_indices) box.extend(mesh.positions[index]);
+        for (const Object* object : shape.objects) {
+            const Affine& matrix = object->world_from_object;
+            if (shape.objects.size() > kFewCopies)
+                for (const Vec3f& corner : get_corners(box)) visit(transform_point(matrix, corner));
             else
-                visit_displaced(*shape.mesh, *shape.map, object_from_world, share, visit_one);
-        };
-        const double share = kSamples / double(shapes.size());
+                for (const uint32_t index : mesh.position_indices)
+                    visit(transform_point(matrix, mesh.positions[index]));
+        }
+    }
+}
+
+/// Extends by all samples after `matrix`. Extents hold largest values, so the order of threads does not
+/// matter.
+template <class Extent>
+void extend_by_samples(const DisplacedSamples& samples, const Affine& matrix, Extent& extent) {
+    constexpr size_t kRows = 512; ///< that a thread takes at once
+    std::vector<Extent> parts(samples.row_count() / kRows + 1, extent);
+    parallel_for("samples of surfaces", samples.row_count(), kRows, [&](size_t begin, size_t end) {
+        Extent part = extent;
+        std::vector<Vec3f> points;
+        for (size_t row = begin; row < end; ++row) {
+            points.clear();
+            samples.append_row(row, points);
+            for (const Vec3f& p : points) part.extend(transform_point(matrix, p));
+        }
+        parts[begin / kRows] = part;
+    });
+    for (const Extent& part : parts) extent.extend(part);
+}
+
+/// Extends by samples of all displaced objects in the world.
+template <class Extent> void extend_by_displaced(const std::vector<Shape>& shapes, Extent& extent) {
+    const double share = kSamples / double(shapes.size());
+    for (const Shape& shape : shapes) {
+        if (!shape.map) continue;
         if (shape.objects.size() <= kFewCopies) {
-            for (const Object* object : shape.objects)
-                visit_shape(invert(object->world_from_object).value_or(Affine{}),
-                            share / double(shape.objects.size()),
-                            [&](const Vec3f& p) { visit(transform_point(object->world_from_object, p)); });
+            for (const Object* object : shape.objects) {
+                const Affine& matrix = object->world_from_object;
+                const Affine inverse = invert(matrix).value_or(Affine{});
+                extend_by_samples(
+                    DisplacedSamples(*shape.mesh, *shape.map, inverse, share / double(shape.objects.size())),
+                    matrix, extent);
+            }
             continue;
         }
         Box box;
-        visit_shape(Affine{}, share, [&](const Vec3f& p) { box.extend(p); });
+        extend_by_samples(DisplacedSamples(*shape.mesh, *shape.map, Affine{}, share), Affine{}, box);
         for (const Object* object : shape.objects)
             for (const Vec3f& corner : get_corners(box))
-                visit(transform_point(object->world_from_object, corner));
+                extent.extend(transform_point(object->world_from_object, corner));
     }
+}
+
+Box measure_bare(const std::vector<Shape>& shapes) {
+    Box box;
+    visit_bare(shapes, [&](const Vec3f& p) { box.extend(p); });
+    return box;
 }
 
 Vec3f make_direction(float azimuth_degrees, float elevation_degrees) {
@@ -89,7 +127,7 @@ float find_front(const std::vector<Shape>& shapes, const Box& box) {
     if (size.z <= size.x) return 0;
     double yy = 0, yz = 0, zz = 0;
     const Vec3f middle = box.center();
-    visit_objects(shapes, Part::bare, [&](const Vec3f& p) {
+    visit_bare(shapes, [&](const Vec3f& p) {
         const double y = double(p.y) - double(middle.y), z = double(p.z) - double(middle.z);
         yy += y * y, yz += y * z, zz += z * z;
     });
@@ -102,13 +140,33 @@ float find_front(const std::vector<Shape>& shapes, const Box& box) {
 struct Reach {
     Vec3f right, up, view;
     float tangent_x = 0, tangent_y = 0;
+    bool is_turned = false; ///< points count as the circles that they make about the axis through the centre
+    Vec3f centre, axis;
     std::array<float, 4> sides;
 
     void clear() { sides.fill(-std::numeric_limits<float>::infinity()); }
     void extend(const Vec3f& p) {
+        if (is_turned)
+            extend_by_ring(p);
+        else
+            extend_by_point(p);
+    }
+    void extend(const Reach& other) {
+        for (size_t k = 0; k < sides.size(); ++k) sides[k] = std::max(sides[k], other.sides[k]);
+    }
+
+  private:
+    void extend_by_point(const Vec3f& p) {
         const float x = dot(p, right), y = dot(p, up), z = dot(p, view);
         sides[0] = std::max(sides[0], tangent_x * z + x), sides[1] = std::max(sides[1], tangent_x * z - x);
         sides[2] = std::max(sides[2], tangent_y * z + y), sides[3] = std::max(sides[3], tangent_y * z - y);
+    }
+    void extend_by_ring(const Vec3f& p) {
+        const float height = dot(p - centre, axis);
+        const float radius = length(p - centre - axis * height);
+        const Vec3f toward = normalize(view - axis * dot(view, axis));
+        for (const Vec3f& side : {right, right * -1.0f, toward, toward * -1.0f})
+            extend_by_point(centre + axis * height + side * radius);
     }
 };
 
@@ -124,15 +182,6 @@ Reach make_reach(const Camera& camera, const Vec3f& view, float aspect) {
     return reach;
 }
 
-/// Extends by points around all of the circle that p makes about an axis.
-void extend_by_ring(Reach& reach, const Vec3f& p, const Vec3f& centre, const Vec3f& axis) {
-    const float height = dot(p - centre, axis);
-    const float radius = length(p - centre - axis * height);
-    const Vec3f toward = normalize(reach.view - axis * dot(reach.view, axis));
-    for (const Vec3f& side : {reach.right, reach.right * -1.0f, toward, toward * -1.0f})
-        reach.extend(centre + axis * height + side * radius);
-}
-
 /// Rounds what the displacement adds to the reach of the bare mesh to fifteenths of the mesh's size, which
 /// the margin has room for: so coding errors rarely move the camera.
 void coarsen(Reach& reach, const std::array<float, 4>& bare) {
@@ -145,8 +194,7 @@ void coarsen(Reach& reach, const std::array<float, 4>& bare) {
 }
 
 Vec3f find_body_view(const std::vector<Shape>& shapes) {
-    Box box;
-    visit_objects(shapes, Part::bare, [&](const Vec3f& p) { box.extend(p); });
+    const Box box = measure_bare(shapes);
     Vec3f normal;
     for (const Shape& shape : shapes)
         normal += transform_vector(shape.objects.front()->world_from_object, sum_area_vectors(*shape.mesh));
@@ -163,9 +211,8 @@ Vec3f find_body_view(const std::vector<Shape>& shapes) {
 
 Box measure_scene(const Scene& scene) {
     const std::vector<Shape> shapes = list_shapes(scene);
-    Box box;
-    for (const Part part : {Part::bare, Part::displaced})
-        visit_objects(shapes, part, [&](const Vec3f& p) { box.extend(p); });
+    Box box = measure_bare(shapes);
+    extend_by_displaced(shapes, box);
     return box;
 }
 
@@ -173,8 +220,7 @@ Vec3f choose_view(const Scene& scene, View view) {
     const std::vector<Shape> shapes = list_shapes(scene);
     if (view == View::automatic) return find_body_view(shapes);
     if (view == View::top) return {0, 1, 0};
-    Box box;
-    visit_objects(shapes, Part::bare, [&](const Vec3f& p) { box.extend(p); });
+    const Box box = measure_bare(shapes);
     const float front = scene.objects.size() == 1 ? find_front(shapes, box) : 0;
     switch (view) {
     case View::back:
@@ -194,17 +240,12 @@ Camera frame_scene(const Scene& scene, Camera camera, const Vec3f& view, float a
     if (length(cross(camera.up, view)) < 1e-3f) camera.up = {0, 0, -1};
     const std::vector<Shape> shapes = list_shapes(scene);
     Reach reach = make_reach(camera, view, aspect);
-    Box box;
-    visit_objects(shapes, Part::bare, [&](const Vec3f& p) { box.extend(p); });
-    const auto extend = [&](const Vec3f& p) {
-        if (framing == Framing::turn)
-            extend_by_ring(reach, p, box.center(), normalize(camera.up));
-        else
-            reach.extend(p);
-    };
-    visit_objects(shapes, Part::bare, extend);
+    const Box box = measure_bare(shapes);
+    reach.is_turned = framing == Framing::turn, reach.centre = box.center(),
+    reach.axis = normalize(camera.up);
+    visit_bare(shapes, [&](const Vec3f& p) { reach.extend(p); });
     const std::array<float, 4> bare = reach.sides;
-    visit_objects(shapes, Part::displaced, extend);
+    extend_by_displaced(shapes, reach);
     coarsen(reach, bare);
     const auto& [right, left, top, bottom] = reach.sides;
     const float distance =

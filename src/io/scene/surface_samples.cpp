@@ -89,29 +89,30 @@ Vec3f displace(const Displacement& map, const Vec2f& uv, const FaceFrame& face,
 
 } // namespace
 
-void visit_corners(const Mesh& mesh, const VisitPoint& visit) {
-    for (const uint32_t index : mesh.position_indices) visit(mesh.positions[index]);
+DisplacedSamples::DisplacedSamples(const Mesh& mesh, const Displacement& map, const Affine& object_from_world,
+                                   double count)
+    : mesh_(mesh),
+      map_(map),
+      object_from_world_(object_from_world),
+      steps_(std::clamp(int(std::sqrt(count / double(mesh.face_sizes.size()))), 1, 512)) {
+    size_t first = 0;
+    starts_.reserve(mesh.face_sizes.size());
+    for (const uint32_t size : mesh.face_sizes) starts_.push_back(first), first += size;
 }
 
-void visit_displaced(const Mesh& mesh, const Displacement& map, const Affine& object_from_world, double count,
-                     const VisitPoint& visit) {
-    const int steps = std::clamp(int(std::sqrt(count / double(mesh.face_sizes.size()))), 1, 512);
-    size_t first = 0;
-    for (const uint32_t size : mesh.face_sizes) {
-        const FaceFrame face = make_face_frame(mesh, first, size, map.lengths);
-        for (int j = 0; j < steps; ++j) {
-            for (int i = 0; i < steps; ++i) {
-                // Never on the border, where the uv may belong to the next tile.
-                const float u = (float(i) + 0.5f) / float(steps), v = (float(j) + 0.5f) / float(steps);
-                const auto mix = [&](const auto& c) {
-                    return (c[0] * (1 - u) + c[1] * u) * (1 - v) + (c[3] * (1 - u) + c[2] * u) * v;
-                };
-                Vec3f offset{};
-                if (face.has_uvs) offset = displace(map, mix(face.uvs), face, object_from_world);
-                visit(mix(face.positions) + offset);
-            }
-        }
-        first += size;
+void DisplacedSamples::append_row(size_t row, std::vector<Vec3f>& points) const {
+    const size_t number = row / size_t(steps_);
+    const FaceFrame face = make_face_frame(mesh_, starts_[number], mesh_.face_sizes[number], map_.lengths);
+    // Never on the border, where the uv may belong to the next tile.
+    const float v = (float(row % size_t(steps_)) + 0.5f) / float(steps_);
+    for (int i = 0; i < steps_; ++i) {
+        const float u = (float(i) + 0.5f) / float(steps_);
+        const auto mix = [&](const auto& c) {
+            return (c[0] * (1 - u) + c[1] * u) * (1 - v) + (c[3] * (1 - u) + c[2] * u) * v;
+        };
+        Vec3f offset{};
+        if (face.has_uvs) offset = displace(map_, mix(face.uvs), face, object_from_world_);
+        points.push_back(mix(face.positions) + offset);
     }
 }
 

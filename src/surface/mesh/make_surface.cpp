@@ -232,7 +232,8 @@ void find_overrides(Surface& surface, const std::vector<uint8_t>& lacks_uvs) {
     };
     std::vector<Edge> edges;
     std::vector<EdgeOverride> overrides;
-    edges.reserve(4 * surface.quads.size());
+    std::vector<bool> has_copies(surface.positions.size());
+    for (size_t copy = 0; copy < surface.copies.size(); ++copy) has_copies[surface.copies[copy][0]] = true;
     const auto get_ends = [&](uint32_t patch_edge) {
         const Quad quad = surface.quads[patch_edge / 4];
         return std::array<uint32_t, 2>{quad.vertex[patch_edge & 3], quad.vertex[(patch_edge + 1) & 3]};
@@ -240,6 +241,7 @@ void find_overrides(Surface& surface, const std::vector<uint8_t>& lacks_uvs) {
     for (uint32_t patch_edge = 0; patch_edge < 4 * surface.patch_count(); ++patch_edge) {
         const auto ends = get_ends(patch_edge);
         const uint64_t a = surface.dominant(ends[0]), b = surface.dominant(ends[1]);
+        if (!has_copies[a] && !has_copies[b]) continue; // all patches have the same two vertices
         edges.push_back({std::min(a, b) << 32 | std::max(a, b), patch_edge});
     }
     std::sort(edges.begin(), edges.end());
