@@ -20,6 +20,10 @@ constexpr int kSize = 64;
 /// vertices.
 constexpr uint64_t kRaysAPath = 10;
 
+/// Of so many rays at most one may start beyond the neighbour of its triangle, in a crease narrower than the
+/// error of its position: docs/results/leaks.md. More than the rays of a usual run, which must all hit.
+constexpr uint64_t kRaysAnOutsider = 50000000;
+
 Material make_coated() {
     Material m = make_matte(0.8f);
     m.ior = 1.5f, m.roughness = 0.3f, m.base_diffuse_roughness = 0.5f;
@@ -82,6 +86,14 @@ RenderSettings make_settings(uint64_t rays) {
     return settings;
 }
 
+uint64_t count_lit_pixels(const Image& image) {
+    uint64_t count = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            count += image.at(x, y, 0) != 0 || image.at(x, y, 1) != 0 || image.at(x, y, 2) != 0;
+    return count;
+}
+
 class PathLeakTest : public testing::TestWithParam<PathLeakCase> {};
 
 TEST_P(PathLeakTest, no_path_from_inside_meets_the_light_outside) {
@@ -89,11 +101,7 @@ TEST_P(PathLeakTest, no_path_from_inside_meets_the_light_outside) {
     const RenderResult result = render(make_shell_scene(GetParam()), make_settings(rays));
     const Statistics& s = result.statistics;
     EXPECT_GE(s.camera_rays + s.shadow_rays + s.bounce_rays, rays / 2);
-    const Image& image = result.image;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            for (size_t channel = 0; channel < 3; ++channel)
-                ASSERT_EQ(image.at(x, y, channel), 0.0f) << "pixel " << x << ", " << y;
+    EXPECT_LE(count_lit_pixels(result.image), rays / kRaysAnOutsider);
 }
 
 /// What tells the shell from one with a hole, by the same settings.
