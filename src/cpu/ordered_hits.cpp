@@ -124,8 +124,11 @@ void trace_group(const OrderedCast& cast, const SceneView& scene, TraceContext& 
 
 size_t count_tree_bytes(uint32_t level) {
     if (level <= uint32_t(kTileLevel)) return PatchTree::size_bytes(int(level));
-    const uint32_t depth = level - kTileLevel;
-    return (PatchTree::size_bytes(kTileLevel) << 2 * depth) + TileDirectory::size_bytes(depth + 1);
+    size_t directories = 0;
+    for (uint32_t step = 0; step < DirectoryPlace::step_count(level); ++step)
+        directories += size_t(DirectoryPlace::side(level, step)) * DirectoryPlace::side(level, step);
+    return (PatchTree::size_bytes(kTileLevel) << 2 * (level - kTileLevel)) +
+           directories * sizeof(TileDirectory);
 }
 
 bool trace_ordered(const OrderedCast& cast, std::span<TraceHit> hits) {

@@ -36,8 +36,8 @@ std::vector<cpu::TraceRay> make_mixed_rays(uint32_t count) {
     return rays;
 }
 
-std::shared_ptr<const PreparedScene> prepare_fine_torus(RenderSettings& settings) {
-    settings.surface.level = 7;
+std::shared_ptr<const PreparedScene> prepare_fine_torus(RenderSettings& settings, int level = 7) {
+    settings.surface.level = level;
     const Displacement displacement =
         test::make_displacement(test::make_random_map(64, 64, 0.1f, 5), DisplacementSpace::tangent);
     return prepare_scene(test::make_body_scene(test::make_torus(6, 9), displacement), settings);
@@ -157,6 +157,21 @@ TEST(PatchTreeCacheLimits, a_large_tree_finds_room_in_a_cache_full_of_small_ones
     EXPECT_GT(counters.built_at_level[3], 9000u) << "small ones come and go";
     EXPECT_LT(counters.built_at_level[cpu::kTileLevel], 350u) << "of 1200 look-ups for 200 trees";
     cache.release(context);
+}
+
+/// A patch of the finest level has 16,384 quarters of tiles.
+TEST(PatchTreeCacheLimits, a_ray_into_a_fine_patch_makes_its_way_alone) {
+    RenderSettings settings;
+    const auto prepared = prepare_fine_torus(settings, kMaxLevel);
+    const cpu::Tracer tracer(prepared, settings);
+    const std::vector<cpu::TraceRay> rays(1, {{0, 5, 1}, 0, {0, -1, 0}});
+    std::vector<cpu::TraceHit> hits(1);
+    Statistics before, after;
+    tracer.add_statistics(before);
+    tracer.closest_hits(rays, hits);
+    tracer.add_statistics(after);
+    EXPECT_TRUE(hits[0].is_hit());
+    EXPECT_LT(after.bottom_cache_bytes - before.bottom_cache_bytes, 16 * kTreeBytes);
 }
 
 /// Look-ups go on to the next slot without a look at the tree of another key.

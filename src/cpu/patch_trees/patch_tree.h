@@ -2,8 +2,9 @@
 // blocks of 4 x 2 micro-quads (15 vertices, 16 triangles: one 16-lane register an axis). Blocks are not
 // stored: every vertex is kept once, in the grid of its tile, and a block is loaded out of three of its rows.
 //
-// A patch tree covers a tile of at most 64 x 64 cells. Finer patches have a directory, the same tree over the
-// boxes of their tiles' quarters: only the tiles that rays enter are evaluated.
+// A patch tree covers a tile of at most 64 x 64 cells. Finer patches have directories: nodes of the same kind
+// over parts of the patch, down to the quarters of tiles. Only the directories and tiles that rays enter are
+// made.
 #pragma once
 
 #include <atomic>
@@ -11,13 +12,14 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "relief/render.h"
 #include "surface/patch/surface.h"
 
 namespace relief::cpu {
 
-inline constexpr int kTileLevel = 6;                    ///< a tile has at most 2^6 cells a side
-inline constexpr int kQuarterLevel = kTileLevel - 1;    ///< of what directories have boxes of
-inline constexpr uint32_t kDirectoryTile = 0xffffffffu; ///< in place of a tile index: the patch's directory
+inline constexpr int kTileLevel = 6;                 ///< a tile has at most 2^6 cells a side
+inline constexpr int kQuarterLevel = kTileLevel - 1; ///< of the smallest parts that directories have boxes of
+inline constexpr uint32_t kDirectories = 0x80000000u; ///< in place of tile indices: DirectoryPlace::number()
 
 /// Boxes of up to sixteen children: lower x y z, upper x y z. Empty slots have lower +inf, upper -inf.
 struct alignas(64) Node16 {
@@ -142,46 +144,52 @@ constexpr size_t PatchTree::size_bytes(int level) {
     return sizeof(PatchTree) + node_bytes(level) + (vertex_bytes(level) + 63) / 64 * 64;
 }
 
-/// Tree over the quarters of a finer patch's tiles, 2^depth a side, with boxes from the map, smaller than
-/// those of whole tiles. Step s has step_side(s)^2 nodes by rows; children are 4 x 4 nodes of the next step
-/// (2 x 2 from the root when depth is odd); those of the last step are the quarters of four tiles.
-struct TileDirectory : CachedTree {
-    uint32_t depth = 0;
+/// Place of a directory in its patch: part (x, y) of those of a step, which are side(step) by side(step).
+/// Step 0 is the whole patch. The children of a directory are 4 x 4 parts of the next step (2 x 2 from the
+/// whole patch where that makes an even number of halvings); those of the last step are the quarters of four
+/// tiles. `level` is the patch's, above kTileLevel.
+struct DirectoryPlace {
+    uint32_t step = 0, x = 0, y = 0;
 
-    static constexpr uint32_t step_count(uint32_t depth) { return (depth + 1) / 2; }
-    /// Children a side of a node of step s.
-    static constexpr uint32_t fanout(uint32_t depth, uint32_t step) {
-        return step == 0 && depth % 2 == 1 ? 2 : 4;
+    static constexpr uint32_t step_count(uint32_t level) { return (level - kQuarterLevel + 1) / 2; }
+    static constexpr uint32_t side(uint32_t level, uint32_t step) {
+        return step == 0 ? 1 : 1u << (level - kQuarterLevel - 2 * (step_count(level) - step));
     }
-    /// Nodes a side of step s.
-    static constexpr uint32_t step_side(uint32_t depth, uint32_t step) {
-        return step == 0 ? 1 : (depth % 2 == 1 ? 2u : 4u) << (2 * (step - 1));
+    /// Children a side of a directory of this step, as a power of two.
+    static constexpr uint32_t shift(uint32_t level, uint32_t step) {
+        return step == 0 && (level - kQuarterLevel) % 2 == 1 ? 1 : 2;
     }
-    static constexpr uint32_t step_begin(uint32_t depth, uint32_t step) {
-        uint32_t begin = 0;
-        for (uint32_t s = 0; s < step; ++s) begin += step_side(depth, s) * step_side(depth, s);
-        return begin;
+    constexpr bool is_last(uint32_t level) const { return step + 1 == step_count(level); }
+    /// Child `number` of a node, by rows.
+    constexpr DirectoryPlace child(uint32_t level, uint32_t number) const {
+        const uint32_t bits = shift(level, step);
+        return {step + 1, (x << bits) + (number & ((1u << bits) - 1)), (y << bits) + (number >> bits)};
     }
-    /// The tile that quarter (x, y) of the patch belongs to, and which of the four of its node it is.
-    static constexpr uint32_t find_tile(uint32_t depth, uint32_t x, uint32_t y) {
-        return (y / 2) << (depth - 1) | x / 2;
+    /// The tile that this quarter of a tile belongs to.
+    constexpr uint32_t tile(uint32_t level) const { return (y / 2) << (level - kTileLevel) | x / 2; }
+
+    constexpr uint32_t number() const { return kDirectories | step << 24 | y << 12 | x; }
+    static constexpr DirectoryPlace from_number(uint32_t number) {
+        return {number >> 24 & 0x7f, number & 0xfff, number >> 12 & 0xfff};
     }
+};
+
+inline constexpr uint32_t kMostDirectorySteps = DirectoryPlace::step_count(kMaxLevel);
+
+/// The boxes of the parts of a patch, or of a part of it, with bounds from the map.
+struct TileDirectory : CachedTree {
+    Node16 node;
+
+    /// Which of the four tiles below a directory of the last step child `child` is a quarter of.
     static constexpr uint32_t find_tile_of_node(uint32_t child) {
         return (child >> 2 & 2) | (child >> 1 & 1);
     }
-    static constexpr size_t size_bytes(uint32_t depth);
-    const Node16* nodes() const { return reinterpret_cast<const Node16*>(this + 1); }
-    Node16* nodes() { return reinterpret_cast<Node16*>(this + 1); }
 };
-
-constexpr size_t TileDirectory::size_bytes(uint32_t depth) {
-    return sizeof(TileDirectory) + size_t(step_begin(depth, step_count(depth))) * sizeof(Node16);
-}
 
 /// Builds `tree`, whose key, level, cell_x and cell_y are set, by evaluating the tile's vertices.
 using BuildTreeFunction = void (*)(const Surface& surface, const PatchLevels& levels, PatchTree& tree);
 
-/// Builds `directory`, whose key and depth are set, from conservative boxes.
+/// Builds `directory`, whose key is set, from conservative boxes.
 void build_tile_directory(const Surface& surface, const PatchLevels& levels, TileDirectory& directory);
 
 } // namespace relief::cpu

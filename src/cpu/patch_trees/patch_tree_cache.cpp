@@ -32,6 +32,12 @@ uint64_t hash_key(const TreeKey& key) {
     return mix(mix(uint64_t(key.patch) << 32 | key.surface) + (uint64_t(key.tile) << 32 | key.levels));
 }
 
+/// Directories above one that is visited stay where they are.
+TileDirectory* find_directory_scratch(const TraceContext& context, const TreeKey& key) {
+    return static_cast<TileDirectory*>(context.directory_scratch.get()) +
+           DirectoryPlace::from_number(key.tile).step;
+}
+
 /// What a ray looks at next, while the key is still on its way.
 void prefetch_boxes(const CachedTree* tree) {
     const char* boxes = reinterpret_cast<const char*>(tree + 1);
@@ -95,6 +101,7 @@ TraceContext& PatchTreeCache::acquire() {
         context = new TraceContext;
         context->is_taken.store(true);
         context->tree_scratch.reset(allocate_aligned(PatchTree::size_bytes(kTileLevel)));
+        context->directory_scratch.reset(allocate_aligned(kMostDirectorySteps * sizeof(TileDirectory)));
         context->next = contexts_.load();
         while (!contexts_.compare_exchange_weak(context->next, context)) {
         }
@@ -144,10 +151,11 @@ const CachedTree& PatchTreeCache::find_or_build_elsewhere(TraceContext& context,
         return *found;
     if (is_stop_asked_for_ && is_stop_asked_for_()) throw StopRequest();
     const Timer timer;
-    CachedTree* tree = key.tile == kDirectoryTile
-                           ? static_cast<CachedTree*>(make_directory(context, surface, key))
-                           : make_tree(context, surface, key);
-    const bool is_scratch = tree == context.tree_scratch.get() || tree == context.directory_scratch.get();
+    const bool is_directory = key.tile >= kDirectories;
+    CachedTree* tree = is_directory ? static_cast<CachedTree*>(make_directory(context, surface, key))
+                                    : make_tree(context, surface, key);
+    const bool is_scratch =
+        tree == context.tree_scratch.get() || (is_directory && tree == find_directory_scratch(context, key));
     if (slot_count_ > 0) note_rebuild(context, *tree);
     if (context.owns_trees)
         own(context, tree);
@@ -181,20 +189,13 @@ PatchTree* PatchTreeCache::make_tree(TraceContext& context, const Surface& surfa
 
 TileDirectory* PatchTreeCache::make_directory(TraceContext& context, const Surface& surface,
                                               const TreeKey& key) {
-    const PatchLevels levels = unpack_levels(key.levels);
-    const uint32_t depth = uint32_t(levels.patch - kQuarterLevel);
-    const size_t bytes = TileDirectory::size_bytes(depth);
-    void* memory = allocate(context, bytes);
-    if (!memory && context.directory_scratch_bytes < bytes) {
-        context.directory_scratch.reset(allocate_aligned(bytes));
-        context.directory_scratch_bytes = bytes;
-    }
-    BlockGuard guard{*this, memory, TreeMemory::block_bytes(bytes), context.owns_trees};
-    TileDirectory* directory = new (memory ? memory : context.directory_scratch.get()) TileDirectory;
+    constexpr size_t kBytes = sizeof(TileDirectory);
+    void* memory = allocate(context, kBytes);
+    BlockGuard guard{*this, memory, TreeMemory::block_bytes(kBytes), context.owns_trees};
+    TileDirectory* directory = new (memory ? memory : find_directory_scratch(context, key)) TileDirectory;
     directory->key = key;
-    directory->byte_count = uint32_t(bytes);
-    directory->depth = depth;
-    build_tile_directory(surface, levels, *directory);
+    directory->byte_count = uint32_t(kBytes);
+    build_tile_directory(surface, unpack_levels(key.levels), *directory);
     guard.memory = nullptr;
     return directory;
 }
@@ -279,7 +280,7 @@ void PatchTreeCache::retire(TraceContext& context, CachedTree* tree) {
 
 void PatchTreeCache::note_rebuild(TraceContext& context, const CachedTree& tree) {
     if (!given_up_.may_contain(hash_key(tree.key))) return;
-    context.counters.rebuilt += tree.key.tile != kDirectoryTile;
+    context.counters.rebuilt += tree.key.tile < kDirectories;
     rebuilt_bytes_.fetch_add(tree.byte_count, std::memory_order_relaxed);
 }
 

@@ -80,8 +80,8 @@ struct TraceContext {
     struct AlignedFree {
         void operator()(void* memory) const;
     };
-    std::unique_ptr<void, AlignedFree> tree_scratch, directory_scratch;
-    size_t directory_scratch_bytes = 0;
+    std::unique_ptr<void, AlignedFree> tree_scratch;
+    std::unique_ptr<void, AlignedFree> directory_scratch; ///< one of each step
     TraceCounters counters;
     bool is_timed = false;           ///< this batch measures its bottom stage
     std::vector<CastCounters> casts; ///< at 2 depth, shadow rays at 2 depth + 1

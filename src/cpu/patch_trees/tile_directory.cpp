@@ -1,4 +1,7 @@
 
+#include <array>
+#include <span>
+
 #include "cpu/patch_trees/patch_tree.h"
 
 namespace relief::cpu {
@@ -12,41 +15,23 @@ void store_box(Node16& node, uint32_t child, const Box& box) {
     }
 }
 
-Box compute_union(const Node16& node) {
-    Box box;
-    for (int child = 0; child < 16; ++child) {
-        box.lower = min(box.lower, {node.bounds[0][child], node.bounds[1][child], node.bounds[2][child]});
-        box.upper = max(box.upper, {node.bounds[3][child], node.bounds[4][child], node.bounds[5][child]});
-    }
-    return box;
-}
-
 } // namespace
 
 void build_tile_directory(const Surface& surface, const PatchLevels& levels, TileDirectory& directory) {
-    const uint32_t depth = directory.depth, steps = TileDirectory::step_count(depth);
-    Node16* nodes = directory.nodes();
-    for (uint32_t step = steps; step-- > 0;) {
-        const uint32_t side = TileDirectory::step_side(depth, step),
-                       fanout = TileDirectory::fanout(depth, step);
-        const uint32_t begin = TileDirectory::step_begin(depth, step);
-        const uint32_t next_begin = TileDirectory::step_begin(depth, step + 1), next_side = side * fanout;
-        for (uint32_t index = 0; index < side * side; ++index) {
-            const uint32_t x = index % side, y = index / side;
-            for (uint32_t child = 0; child < 16; ++child) {
-                Box box;
-                if (child < fanout * fanout) {
-                    const uint32_t cx = x * fanout + child % fanout, cy = y * fanout + child / fanout;
-                    constexpr uint32_t kSide = 1u << kQuarterLevel;
-                    box = step + 1 == steps
-                              ? compute_tile_box(surface, directory.key.patch, levels,
-                                                 {cx * kSide, cy * kSide, (cx + 1) * kSide, (cy + 1) * kSide})
-                              : compute_union(nodes[next_begin + cy * next_side + cx]);
-                }
-                store_box(nodes[begin + index], child, box);
-            }
-        }
+    const DirectoryPlace place = DirectoryPlace::from_number(directory.key.tile);
+    const uint32_t bits = DirectoryPlace::shift(levels.patch, place.step);
+    const uint32_t cells = (1u << levels.patch) / (DirectoryPlace::side(levels.patch, place.step) << bits);
+    std::array<Cells, 16> parts;
+    std::array<Box, 16> boxes; // empty beyond the children
+    const size_t count = size_t(1) << 2 * bits;
+    for (uint32_t number = 0; number < count; ++number) {
+        const DirectoryPlace child = place.child(levels.patch, number);
+        parts[number] = {child.x * cells, child.y * cells, (child.x + 1) * cells, (child.y + 1) * cells};
     }
+    compute_tile_boxes(surface, directory.key.patch, levels, std::span(parts).first(count),
+                       std::span(boxes).first(count));
+    for (uint32_t number = 0; number < boxes.size(); ++number)
+        store_box(directory.node, number, boxes[number]);
 }
 
 } // namespace relief::cpu

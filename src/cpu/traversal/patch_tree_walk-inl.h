@@ -34,9 +34,9 @@ struct PatchVisit {
         return scene->cache->find_or_build_tree(*context, scene->surfaces[surface],
                                                 {surface, patch, tile, levels});
     }
-    RELIEF_INLINE const cpu::TileDirectory& find_directory() const {
+    RELIEF_INLINE const cpu::TileDirectory& find_directory(const cpu::DirectoryPlace& place) const {
         return scene->cache->find_or_build_directory(*context, scene->surfaces[surface],
-                                                     {surface, patch, cpu::kDirectoryTile, levels});
+                                                     {surface, patch, place.number(), levels});
     }
     RELIEF_INLINE void count_node() const { ++context->counters.patch_nodes; }
     RELIEF_INLINE void count_pairs(uint32_t entered, uint32_t hit) const {
@@ -103,29 +103,23 @@ template <PatchProbe Probe> bool visit_patch_tree(const cpu::PatchTree& tree, Pr
     return false;
 }
 
-/// Node (x, y) of a step of a directory and all below. Nearest first also for any-hit, for the cache's sake.
+/// A directory and all below. Nearest first also for any-hit, for the cache's sake.
 template <PatchProbe Probe>
-bool visit_directory(const cpu::TileDirectory& directory, uint32_t step, uint32_t x, uint32_t y, Probe& probe,
-                     LaneMask rays) {
-    using cpu::TileDirectory;
-    const uint32_t depth = directory.depth, shift = TileDirectory::fanout(depth, step) / 2; // 2: 1, 4: 2
-    const uint32_t node =
-        TileDirectory::step_begin(depth, step) + y * TileDirectory::step_side(depth, step) + x;
-    const bool is_last = step + 1 == TileDirectory::step_count(depth);
+bool visit_directory(const cpu::DirectoryPlace& place, Probe& probe, LaneMask rays) {
+    const cpu::TileDirectory& directory = probe.visit.find_directory(place);
+    const uint32_t level = probe.visit.level();
     LaneMask visited[4] = {}; // of each tile: by which rays
     probe.visit.count_node();
-    const auto visit = [&](uint32_t child, LaneMask entered) {
-        const uint32_t cx = (x << shift) + (child & ((1u << shift) - 1)),
-                       cy = (y << shift) + (child >> shift);
-        if (!is_last) return visit_directory(directory, step + 1, cx, cy, probe, entered);
-        LaneMask& before = visited[TileDirectory::find_tile_of_node(child)];
+    const auto visit = [&](uint32_t number, LaneMask entered) {
+        const cpu::DirectoryPlace child = place.child(level, number);
+        if (!place.is_last(level)) return visit_directory(child, probe, entered);
+        LaneMask& before = visited[cpu::TileDirectory::find_tile_of_node(number)];
         const LaneMask left = entered & ~before;
         before |= left;
         if (left == 0) return false;
-        const uint32_t tile = TileDirectory::find_tile(depth, cx, cy);
-        return visit_patch_tree(probe.visit.find_tree(tile), probe, left);
+        return visit_patch_tree(probe.visit.find_tree(child.tile(level)), probe, left);
     };
-    return probe.visit_children(directory.nodes()[node].bounds, rays, visit);
+    return probe.visit_children(directory.node.bounds, rays, visit);
 }
 
 /// The time of a patch where the batch is timed: all but that of building.
@@ -155,7 +149,7 @@ template <PatchProbe Probe> RELIEF_INLINE void visit_patch(Probe& probe, LaneMas
     if (probe.visit.level() <= cpu::kTileLevel)
         visit_patch_tree(probe.visit.find_tree(0), probe, rays);
     else
-        visit_directory(probe.visit.find_directory(), 0, 0, 0, probe, rays);
+        visit_directory(cpu::DirectoryPlace{}, probe, rays);
     probe.count_pairs(rays);
 }
 

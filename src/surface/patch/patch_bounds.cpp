@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "base/check.h"
 #include "surface/map/texel_range.h"
 #include "surface/map/tile_texels.h"
 #include "surface/map/wrapped_range.h"
@@ -291,6 +292,35 @@ Box compute_plain_box(const Surface& surface, uint32_t patch) {
     return box;
 }
 
+/// Of a displaced patch.
+Box bound_cells(const DisplacementMap& map, const PatchSamples& samples, const PatchBase& own,
+                const PatchLevels& levels, const Cells& cells_i0_j0_i1_j1) {
+    const auto [i0, j0, i1, j1] = cells_i0_j0_i1_j1;
+    const uint32_t n = 1u << levels.patch;
+    const double step = 1.0 / n;
+    std::array<Interval, 3> bounds;
+    extend_by_part(bounds, own, {i0 * step, j0 * step, i1 * step, j1 * step});
+    Box corner_box;
+    const bool is_touched[4] = {j0 == 0, i1 == n, j1 == n, i0 == 0};
+    const uint32_t starts[4] = {i0, j0, n - i1, n - j1}, ends[4] = {i1, j1, n - i0, n - j0};
+    for (int k = 0; k < 4; ++k) {
+        if (!is_touched[k]) continue;
+        const bool is_reversed = samples.is_line_reversed(k);
+        const uint32_t first = is_reversed ? n - ends[k] : starts[k],
+                       last = is_reversed ? n - starts[k] : ends[k];
+        const uint32_t moved_first = move_edge_sample(first, levels.patch, levels.edge[k]);
+        const uint32_t moved_last = move_edge_sample(last, levels.patch, levels.edge[k]);
+        if (moved_first == 0) corner_box.extend(samples.corner(samples.line_start(k)));
+        if (moved_last == n) corner_box.extend(samples.corner(samples.line_end(k)));
+        // Samples that stay where they are lie on the boundary of the part.
+        if (samples.is_line_foreign(k) || moved_first != first || moved_last != last)
+            extend_by_line(bounds, samples, map, k, {moved_first * step, moved_last * step});
+    }
+    Box box = round_outward(bounds);
+    box.extend(corner_box);
+    return box;
+}
+
 } // namespace
 
 Box compute_patch_box(const Surface& surface, uint32_t patch) {
@@ -312,34 +342,22 @@ Box compute_patch_box(const Surface& surface, uint32_t patch) {
     return box;
 }
 
-Box compute_tile_box(const Surface& surface, uint32_t patch, const PatchLevels& levels,
-                     const std::array<uint32_t, 4>& cells_i0_j0_i1_j1) {
-    if (!surface.has_displacement) return compute_plain_box(surface, patch);
-    const auto [i0, j0, i1, j1] = cells_i0_j0_i1_j1;
-    const uint32_t n = 1u << levels.patch;
-    const double step = 1.0 / n;
+void compute_tile_boxes(const Surface& surface, uint32_t patch, const PatchLevels& levels,
+                        std::span<const Cells> parts, std::span<Box> boxes) {
+    DCHECK(boxes.size() == parts.size());
+    if (!surface.has_displacement) {
+        std::ranges::fill(boxes, compute_plain_box(surface, patch));
+        return;
+    }
     const PatchSamples samples(surface, patch);
     const PatchBase own(surface, samples);
-    std::array<Interval, 3> bounds;
-    extend_by_part(bounds, own, {i0 * step, j0 * step, i1 * step, j1 * step});
-    Box corner_box;
-    const bool is_touched[4] = {j0 == 0, i1 == n, j1 == n, i0 == 0};
-    const uint32_t starts[4] = {i0, j0, n - i1, n - j1}, ends[4] = {i1, j1, n - i0, n - j0};
-    for (int k = 0; k < 4; ++k) {
-        if (!is_touched[k]) continue;
-        const bool is_reversed = samples.is_line_reversed(k);
-        const uint32_t first = is_reversed ? n - ends[k] : starts[k],
-                       last = is_reversed ? n - starts[k] : ends[k];
-        const uint32_t moved_first = move_edge_sample(first, levels.patch, levels.edge[k]);
-        const uint32_t moved_last = move_edge_sample(last, levels.patch, levels.edge[k]);
-        if (moved_first == 0) corner_box.extend(samples.corner(samples.line_start(k)));
-        if (moved_last == n) corner_box.extend(samples.corner(samples.line_end(k)));
-        // Samples that stay where they are lie on the boundary of the part.
-        if (samples.is_line_foreign(k) || moved_first != first || moved_last != last)
-            extend_by_line(bounds, samples, surface.map, k, {moved_first * step, moved_last * step});
-    }
-    Box box = round_outward(bounds);
-    box.extend(corner_box);
+    for (size_t k = 0; k < parts.size(); ++k)
+        boxes[k] = bound_cells(surface.map, samples, own, levels, parts[k]);
+}
+
+Box compute_tile_box(const Surface& surface, uint32_t patch, const PatchLevels& levels, const Cells& part) {
+    Box box;
+    compute_tile_boxes(surface, patch, levels, {&part, 1}, {&box, 1});
     return box;
 }
 

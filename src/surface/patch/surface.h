@@ -235,8 +235,12 @@ Vec3f compute_shading_normal(const Surface& surface, uint32_t patch, int level, 
 /// Box of every vertex that the patch has at any level and bias, every ulp included.
 Box compute_patch_box(const Surface& surface, uint32_t patch);
 
-/// Box of the cells [i0, i1) x [j0, j1) of a patch at its levels: all their vertices, moved samples included.
-Box compute_tile_box(const Surface& surface, uint32_t patch, const PatchLevels& levels,
-                     const std::array<uint32_t, 4>& cells_i0_j0_i1_j1);
+/// The cells [i0, i1) x [j0, j1) of a patch, as i0, j0, i1, j1.
+using Cells = std::array<uint32_t, 4>;
+
+/// Box of each part of a patch at its levels: all its vertices, moved samples included.
+void compute_tile_boxes(const Surface& surface, uint32_t patch, const PatchLevels& levels,
+                        std::span<const Cells> parts, std::span<Box> boxes);
+Box compute_tile_box(const Surface& surface, uint32_t patch, const PatchLevels& levels, const Cells& part);
 
 } // namespace relief
