@@ -73,9 +73,38 @@ TEST(JoinPoints, faces_with_points_of_their_own_become_a_closed_cube) {
     EXPECT_EQ(std::set(polygons.points.begin(), polygons.points.end()).size(), 8u);
 }
 
-TEST(JoinPoints, errors_count_relative_to_the_largest_coordinate) {
-    EXPECT_EQ(count_open_edges(make_loose_cube(1e-3f, {1000, 0, 0})), 0u);
-    EXPECT_EQ(count_open_edges(make_loose_cube(1e-3f)), 24u);
+TEST(JoinPoints, rounding_of_large_coordinates_is_joined_and_gaps_there_are_not) {
+    EXPECT_EQ(count_open_edges(make_loose_cube(6e-5f, {1000, 0, 0})), 0u) << "a unit in the last place";
+    EXPECT_EQ(count_open_edges(make_loose_cube(6e-5f)), 24u);
+    EXPECT_EQ(count_open_edges(make_loose_cube(1e-3f, {1000, 0, 0})), 24u);
+    EXPECT_EQ(find_near_edges(make_loose_cube(4e-4f, {1000, 0, 0})).count, 24u) << "neither joined nor far";
+    Mesh mesh = make_pair(3);
+    for (Vec3f& p : mesh.positions) p = Vec3f{10 * p.x + 1e6f, 10 * p.y, 10 * p.z};
+    EXPECT_EQ(count_open_edges(mesh), 8u);
+    EXPECT_EQ(find_near_edges(mesh).count, 0u);
+}
+
+TEST(JoinPoints, points_of_no_face_do_not_count) {
+    Mesh mesh = make_pair(0.3f);
+    mesh.positions.push_back({1e6f, 0, 0});
+    EXPECT_EQ(count_open_edges(mesh), 8u);
+    mesh = make_pair(1e-7f);
+    mesh.positions.push_back({1e-9f, 1e6f, 0});
+    EXPECT_EQ(count_open_edges(mesh), 6u);
+}
+
+/// Two strips of quads beside each other, whose common edges are four units in the last place long.
+TEST(JoinPoints, edges_shorter_than_the_reach_are_joined) {
+    Mesh mesh;
+    constexpr float kUnit = 0x1p-14f, kLength = 4 * kUnit; // at 1000
+    for (int k = 0; k < 50; ++k)
+        for (const float x : {1000.0f, 1001.0f}) {
+            const float left = x > 1000 ? x + kUnit : x, y = float(k) * kLength;
+            add_quad(mesh,
+                     {Vec3f{left, y, 0}, {x + 1, y, 0}, {x + 1, y + kLength, 0}, {left, y + kLength, 0}});
+        }
+    EXPECT_EQ(count_open_edges(mesh), 2u * 50 + 4);
+    EXPECT_EQ(find_near_edges(mesh).count, 0u);
 }
 
 TEST(JoinPoints, a_weld_of_zero_joins_equal_positions_alone) {

@@ -20,8 +20,10 @@ namespace relief {
 
 namespace {
 
-/// Rounding errors of a transform and of six decimals in a text, relative to the largest coordinate.
+/// Rounding errors of a transform and of six decimals in a text, relative to the size of the mesh.
 constexpr float kRounding = 0x1p-18f;
+/// Four units in the last place of the largest coordinate.
+constexpr float kUlps = 0x1p-22f;
 /// Edges nearer than this part of the size of the mesh were probably meant to be one.
 constexpr float kNear = 1e-5f;
 /// Faces whose angle at the edge has a larger cosine lie on each other.
@@ -145,15 +147,24 @@ class EdgeJoiner {
         return (to_double(position(edge.first)) + to_double(position(edge.second))) * 0.5;
     }
 
-    /// Unit direction from the edge into its face; zero where the face has no area.
-    Vec3<double> find_inward(const OpenEdge& edge) const {
-        const uint32_t begin = starts_[edge.face], end = begin + mesh_.face_sizes[edge.face];
+    Vec3<double> find_normal(uint32_t face) const {
+        const uint32_t begin = starts_[face], end = begin + mesh_.face_sizes[face];
         std::vector<Vec3f> corners;
         for (uint32_t corner = begin; corner < end; ++corner) corners.push_back(position(points_[corner]));
+        return compute_newell_normal(corners);
+    }
+
+    /// Unit direction from the edge into its face; zero where the face has no area.
+    Vec3<double> find_inward(const OpenEdge& edge, const Vec3<double>& face_normal) const {
         const Vec3<double> along = to_double(position(edge.second)) - to_double(position(edge.first));
-        const Vec3<double> inward = cross(compute_newell_normal(corners), along);
+        const Vec3<double> inward = cross(face_normal, along);
         const double length = std::sqrt(dot(inward, inward));
         return length > 0 ? inward * (1 / length) : Vec3<double>{};
+    }
+
+    /// Edges do not lie on each other that are further apart than half of their length.
+    float find_reach(const OpenEdge& edge) const {
+        return std::min(reach_, measure(edge.first, edge.second) / 2);
     }
 
     std::optional<Partner> compare(uint32_t own, uint32_t other) const {
@@ -162,12 +173,12 @@ class EdgeJoiner {
         const float turned = std::max(measure(a.first, b.second), measure(a.second, b.first));
         const float straight = std::max(measure(a.first, b.first), measure(a.second, b.second));
         const Partner partner{other, turned <= straight, std::min(turned, straight)};
-        if (!(partner.distance <= reach_)) return {};
+        if (!(partner.distance <= std::min(find_reach(a), find_reach(b)))) return {};
         if (dot(inward_[own], inward_[other]) > kFoldedCosine) return {};
         return partner;
     }
 
-    /// Whether `a` is a better one: neighbours with consistent normals first, then the nearest.
+    /// True if `a` is the better one: neighbours with consistent normals first, then the nearest.
     static bool is_better(const Partner& a, const std::optional<Partner>& b) {
         if (!b) return true;
         if (a.is_turned != b->is_turned) return a.is_turned;
@@ -183,22 +194,22 @@ class EdgeJoiner {
             for (const uint32_t point : {edge.first, edge.second})
                 largest = std::max(largest, largest_coordinate(position(point)));
         EdgeGrid grid(std::max(4 * double(reach_), double(largest) * 0x1p-40));
-        std::vector<uint32_t> wanted;
+        Vec3<double> normal;
         for (uint32_t edge = 0; edge < edges_.size(); ++edge) {
-            inward_.push_back(find_inward(edges_[edge]));
-            if (!(measure(edges_[edge].first, edges_[edge].second) > 2 * reach_)) continue;
+            if (edge == 0 || edges_[edge].face != edges_[edge - 1].face)
+                normal = find_normal(edges_[edge].face);
+            inward_.push_back(find_inward(edges_[edge], normal));
             grid.add(find_middle(edges_[edge]), edge);
-            wanted.push_back(edge);
         }
         std::vector<std::optional<Partner>> best(edges_.size());
-        for (const uint32_t edge : wanted)
+        for (uint32_t edge = 0; edge < edges_.size(); ++edge)
             grid.visit_near(find_middle(edges_[edge]), [&](uint32_t other) {
                 const std::optional<Partner> partner = compare(edge, other);
                 if (partner && is_better(*partner, best[edge])) best[edge] = partner;
             });
         // Of a double sheet each side goes with its own continuation. A third sheet joins two that are one.
         partners_.resize(edges_.size());
-        for (const uint32_t edge : wanted) {
+        for (uint32_t edge = 0; edge < edges_.size(); ++edge) {
             if (!best[edge]) continue;
             const uint32_t other = best[edge]->edge;
             const uint32_t back = best[other] ? best[other]->edge : edge;
@@ -251,11 +262,24 @@ class EdgeJoiner {
     std::vector<bool> apart_;                      ///< by set
 };
 
-float choose_reach(const Mesh& mesh) {
+/// Of the points that faces have.
+struct Measures {
+    Box box;
+    float largest = 0; ///< coordinate, as an absolute value
+};
+
+Measures measure_points(const Mesh& mesh) {
+    Measures result;
+    for (const uint32_t index : mesh.position_indices) {
+        const Vec3f& p = mesh.positions[index];
+        result.box.extend(p), result.largest = std::max(result.largest, largest_coordinate(p));
+    }
+    return result;
+}
+
+float choose_reach(const Mesh& mesh, const Measures& measures) {
     if (mesh.weld) return *mesh.weld;
-    float largest = 0;
-    for (const Vec3f& p : mesh.positions) largest = std::max(largest, largest_coordinate(p));
-    return largest * kRounding;
+    return std::max(largest_coordinate(measures.box.extent()) * kRounding, measures.largest * kUlps);
 }
 
 /// Rounded up to two digits.
@@ -277,14 +301,15 @@ std::vector<uint32_t> find_equal_points(const std::vector<Vec3f>& positions) {
 
 JoinedPoints join_points(const Mesh& mesh) {
     const std::vector<uint32_t> equal = find_equal_points(mesh.positions);
-    return EdgeJoiner(mesh, equal, choose_reach(mesh)).join();
+    if (mesh.position_indices.empty()) return {equal, 0, 0, 0};
+    return EdgeJoiner(mesh, equal, choose_reach(mesh, measure_points(mesh))).join();
 }
 
 NearEdges find_near_edges(const Mesh& mesh) {
-    if (mesh.weld && *mesh.weld == 0) return {};
-    Box box;
-    for (const Vec3f& p : mesh.positions) box.extend(p);
-    const float reach = choose_reach(mesh), near = kNear * length(box.extent());
+    if ((mesh.weld && *mesh.weld == 0) || mesh.position_indices.empty()) return {};
+    const Measures measures = measure_points(mesh);
+    const float reach = choose_reach(mesh, measures);
+    const float near = std::max(kNear * length(measures.box.extent()), 4 * kUlps * measures.largest);
     if (!(near > reach)) return {};
     const std::vector<uint32_t> equal = find_equal_points(mesh.positions);
     const JoinedPoints wide = EdgeJoiner(mesh, equal, near).join();
