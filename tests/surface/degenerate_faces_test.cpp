@@ -96,6 +96,22 @@ TEST(DegenerateFaces, slivers_beside_each_other_go_into_one_edge) {
     }
 }
 
+/// Each sliver of a fan has the next one across its longest edge; the last one has a face.
+TEST(DegenerateFaces, a_long_row_of_slivers_goes_into_one_edge) {
+    constexpr uint32_t kSlivers = 20000;
+    Mesh mesh;
+    mesh.name = "row";
+    for (uint32_t k = 0; k <= kSlivers + 1; ++k) mesh.positions.push_back({float(k) * 0x1p-10f, 0, 0});
+    for (uint32_t k = 1; k <= kSlivers; ++k)
+        mesh.position_indices.insert(mesh.position_indices.end(), {0, k, k + 1});
+    mesh.positions.push_back({0, 1, 0});
+    mesh.position_indices.insert(mesh.position_indices.end(), {0, kSlivers + 1, kSlivers + 2});
+    mesh.face_sizes.assign(kSlivers + 1, 3);
+    const Polygons polygons = make_polygons(mesh, Welding::joined_points);
+    ASSERT_EQ(polygons.face_count(), 1u);
+    EXPECT_EQ(polygons.face_size(0), kSlivers + 3);
+}
+
 TEST(DegenerateFaces, a_mesh_of_nothing_else_is_refused) {
     Mesh mesh = make_sliver_mesh();
     mesh.face_sizes = {3}, mesh.position_indices = {2, 1, 0}, mesh.uv_indices = {0, 0, 0};

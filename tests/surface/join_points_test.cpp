@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -82,6 +83,19 @@ TEST(JoinPoints, rounding_of_large_coordinates_is_joined_and_gaps_there_are_not)
     for (Vec3f& p : mesh.positions) p = Vec3f{10 * p.x + 1e6f, 10 * p.y, 10 * p.z};
     EXPECT_EQ(count_open_edges(mesh), 8u);
     EXPECT_EQ(find_near_edges(mesh).count, 0u);
+}
+
+/// Its normal is worked out once, not for each of its edges.
+TEST(JoinPoints, a_polygon_of_many_open_edges_is_looked_at_once) {
+    constexpr uint32_t kCorners = 200000;
+    Mesh mesh;
+    for (uint32_t k = 0; k < kCorners; ++k) {
+        const double angle = 2 * 3.14159265358979 * k / kCorners;
+        mesh.position_indices.push_back(k);
+        mesh.positions.push_back({float(1e4 * std::cos(angle)), float(1e4 * std::sin(angle)), 0});
+    }
+    mesh.face_sizes = {kCorners};
+    EXPECT_EQ(join_points(mesh).joined_edges, 0u);
 }
 
 TEST(JoinPoints, points_of_no_face_do_not_count) {

@@ -53,6 +53,19 @@ TEST(UdimTiles, continue_each_other_where_the_mesh_goes_on) {
         }
 }
 
+TEST(UdimTiles, continue_each_other_where_points_nearly_coincide) {
+    Mesh mesh = make_two_quads();
+    for (const uint32_t corner : {4u, 7u}) { // those at x = 1 of the second quad
+        Vec3f p = mesh.positions[mesh.position_indices[corner]];
+        p.x += 2e-7f;
+        mesh.position_indices[corner] = uint32_t(mesh.positions.size());
+        mesh.positions.push_back(p);
+    }
+    const Displacement displacement = make_tiles({{1001, make_ramp(16, 0, 1)}, {1002, make_ramp(16, 1, 2)}});
+    const Surface surface = make_surface(mesh, &displacement, {});
+    for (float x = 0.75f; x <= 1.25f; x += 1.0f / 32) EXPECT_NEAR(find_height(surface, x), x, 2e-6f) << x;
+}
+
 /// A number as large plus 1 is the same number, so that a loop over squares would not end.
 TEST(UdimTiles, faces_far_away_in_uv_have_no_tile) {
     const Displacement displacement = make_tiles({{1001, make_ramp(4, 1, 2)}});

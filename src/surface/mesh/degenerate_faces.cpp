@@ -17,7 +17,7 @@ namespace relief {
 
 namespace {
 
-/// Of the square of the longest edge: rounding of collinear corners.
+/// Areas below this part of the square of the longest edge are rounding of collinear corners.
 constexpr double kSmallestAreaRatio = 1e-12;
 
 using Edge = std::pair<uint32_t, uint32_t>;
@@ -69,63 +69,66 @@ class CornerList {
     std::vector<uint32_t> sizes_;        ///< by face
 };
 
-/// Gives corners of faces without area to the neighbours across their longest edges, which may be such faces
-/// themselves.
+/// Gives the corners of faces without area to the neighbours across their longest edges. Where the neighbour
+/// is such a face too, it goes first, so that each corner is given away once.
 class Splicer {
   public:
     Splicer(Polygons& polygons, const std::vector<uint8_t>& is_dropped)
-        : polygons_(polygons),
-          is_dropped_(is_dropped),
-          numbers_(find_equal_points(polygons.positions)),
-          corners_(polygons) {
-        // Neighbours that stay win over those that are dropped.
-        for (const uint8_t pass : {0, 1})
-            for (uint32_t corner = 0; corner < corners_.count(); ++corner)
-                if (is_dropped[corners_.face(corner)] == pass)
-                    corner_of_edge_.try_emplace(get_edge(corner), corner);
+        : polygons_(polygons), numbers_(find_equal_points(polygons.positions)), corners_(polygons) {
+        for (uint32_t corner = 0; corner < corners_.count(); ++corner)
+            if (!is_dropped[corners_.face(corner)]) corner_of_edge_.try_emplace(get_edge(corner), corner);
+        for (uint32_t face = 0; face < is_dropped.size(); ++face)
+            if (is_dropped[face] && corners_.size(face) >= 3) {
+                const auto [end, begin] = get_edge(find_longest(face));
+                waiting_.try_emplace({begin, end}, face);
+            }
     }
 
     void splice() {
-        std::vector<uint32_t> open;
-        for (uint32_t face = 0; face < is_dropped_.size(); ++face)
-            if (is_dropped_[face]) open.push_back(face);
-        // What a face has taken over may give it another longest edge, with a neighbour.
-        for (size_t before = open.size() + 1; open.size() < before;) {
-            before = open.size();
-            std::erase_if(open, [this](uint32_t face) { return splice(face); });
+        std::vector<Edge> open;
+        for (const auto& [edge, face] : waiting_)
+            if (corner_of_edge_.contains(edge)) open.push_back(edge);
+        while (!open.empty()) {
+            const auto place = waiting_.find(open.back());
+            open.pop_back();
+            if (place == waiting_.end()) continue;
+            const auto [edge, face] = *place;
+            waiting_.erase(place);
+            splice(face, edge, open);
         }
     }
 
     const CornerList& corners() const { return corners_; }
 
   private:
-    /// False where the face stays apart: there is no neighbour, or no order along the edge.
-    bool splice(uint32_t face) {
-        if (corners_.size(face) < 3) return true;
+    /// Adds the corners of a face to the one that has `edge`, and the edges that this one gets to `added`.
+    /// The face stays apart where its corners have no order along the edge.
+    void splice(uint32_t face, const Edge& edge, std::vector<Edge>& added) {
         const uint32_t longest = find_longest(face);
-        const auto [end, begin] = get_edge(longest);
-        const auto neighbour = corner_of_edge_.find({begin, end});
-        if (neighbour == corner_of_edge_.end() || corners_.face(neighbour->second) == face) return false;
-        const uint32_t from = neighbour->second, to = corners_.next(from);
+        const uint32_t from = corner_of_edge_.at(edge), to = corners_.next(from);
         const double whole = get_length(longest);
         double reached = 0;
         std::vector<std::pair<uint32_t, float>> points;
         for (uint32_t corner = corners_.next(longest); corners_.next(corner) != longest;) {
             reached += get_length(corner);
-            if (!(reached < whole)) return false; // the corners turn back
+            if (!(reached < whole)) return; // the corners turn back
             corner = corners_.next(corner);
             points.emplace_back(polygons_.points[corner], float(reached / whole));
         }
-        // Both are sides of the shared edge, which is gone.
-        corner_of_edge_.erase({begin, end}), corner_of_edge_.erase({end, begin});
+        corner_of_edge_.erase(edge);
         uint32_t last = from;
         for (const auto& [point, part] : points) {
-            const uint32_t added = corners_.insert(last, point, from, to, part);
-            corner_of_edge_[get_edge(last)] = last;
-            last = added;
+            const uint32_t corner = corners_.insert(last, point, from, to, part);
+            note_edge(last, added);
+            last = corner;
         }
-        corner_of_edge_[get_edge(last)] = last;
-        return true;
+        note_edge(last, added);
+    }
+
+    void note_edge(uint32_t corner, std::vector<Edge>& added) {
+        const Edge edge = get_edge(corner);
+        corner_of_edge_[edge] = corner;
+        added.push_back(edge);
     }
 
     uint32_t find_longest(uint32_t face) const {
@@ -144,10 +147,11 @@ class Splicer {
     }
 
     Polygons& polygons_;
-    const std::vector<uint8_t>& is_dropped_;
     std::vector<uint32_t> numbers_;
     CornerList corners_;
-    std::map<Edge, uint32_t> corner_of_edge_; ///< by its two points in the order of the face
+    std::map<Edge, uint32_t>
+        corner_of_edge_;               ///< of faces that stay; by its two points in the order of the face
+    std::map<Edge, uint32_t> waiting_; ///< faces without area, by the edge that a neighbour would have
 };
 
 } // namespace

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <utility>
 
 #include "scene/tile_use.h"
+#include "surface/mesh/join_points.h"
 
 namespace relief {
 
@@ -19,7 +19,7 @@ constexpr double kNearBorder = 1e-5; ///< uvs on a border are at most so far fro
 class LinkFinder {
   public:
     LinkFinder(const Mesh& mesh, const std::vector<MapTile>& tiles, bool flip_v)
-        : mesh_(mesh), flip_v_(flip_v), links_(tiles.size()) {
+        : mesh_(mesh), flip_v_(flip_v), points_(join_points(mesh).representatives), links_(tiles.size()) {
         for (size_t k = 0; k < tiles.size(); ++k) number_of_[tiles[k].udim] = uint8_t(k);
         for (TileNeighbours& links : links_) links.fill(Surface::kNoTile);
     }
@@ -38,11 +38,10 @@ class LinkFinder {
     }
 
   private:
-    using PointKey = std::tuple<float, float, float>;
     struct Border {
-        PointKey low, high;
-        bool is_column; ///< between two columns of tiles; else between two rows
-        double line;    ///< the greater of the numbers of both columns or rows
+        uint32_t low, high; ///< points
+        bool is_column;     ///< between two columns of tiles; else between two rows
+        double line;        ///< the greater of the numbers of both columns or rows
         friend auto operator<=>(const Border&, const Border&) = default;
     };
 
@@ -88,8 +87,7 @@ class LinkFinder {
         const bool is_column = is_along(a.x, b.x);
         if (!is_column && !is_along(a.y, b.y)) return;
         const double line = std::round(is_column ? double(a.x) : double(a.y));
-        PointKey low = get_point(first + k), high = get_point(first + next);
-        if (high < low) std::swap(low, high);
+        const auto [low, high] = std::minmax(get_point(first + k), get_point(first + next));
         const std::array<double, 2> square = {span.middle_column, span.middle_row};
         const auto [place, is_new] = edges_.try_emplace({low, high, is_column, line}, square);
         if (is_new || place->second == square) return;
@@ -101,13 +99,11 @@ class LinkFinder {
         if (!is_column && columns == 0 && rows == 1) link(column, row, false);
     }
 
-    PointKey get_point(size_t corner) const {
-        const Vec3f& p = mesh_.positions[mesh_.position_indices[corner]];
-        return {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
-    }
+    const uint32_t& get_point(size_t corner) const { return points_[mesh_.position_indices[corner]]; }
 
     const Mesh& mesh_;
     const bool flip_v_;
+    const std::vector<uint32_t> points_;            ///< that surfaces have in place of the mesh's
     std::map<int, uint8_t> number_of_;              ///< of tiles, by their UDIM number
     std::map<Border, std::array<double, 2>> edges_; ///< squares of the first faces at edges along borders
     std::vector<TileNeighbours> links_;
