@@ -205,6 +205,10 @@ TEST(SmoothSurface, tells_what_cannot_be_subdivided) {
     for (const Vec3f& p : {Vec3f{3, 1, 1}, Vec3f{3, 3, 1}, Vec3f{1, 3, 1}}) pinched.positions.push_back(p);
     test::add_face(pinched, {7, 8, 9, 10}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
     EXPECT_NE(try_mesh(pinched).find("share no edge"), std::string::npos) << try_mesh(pinched);
+    pinched.position_indices[24] =
+        uint32_t(pinched.positions.size()); // a point of its own, at the same place
+    pinched.positions.push_back(Vec3f(pinched.positions[7]));
+    EXPECT_EQ(try_mesh(pinched), "");
     Mesh circling = mesh;
     test::add_face(circling, {0, 1, 5, 0, 6, 7}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 1}, {0, 0}});
     EXPECT_NE(try_mesh(circling).find("comes back"), std::string::npos) << try_mesh(circling);

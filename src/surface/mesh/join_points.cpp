@@ -14,6 +14,7 @@
 #include "math/box.h"
 #include "math/vec.h"
 #include "surface/mesh/open_edges.h"
+#include "surface/mesh/point_sets.h"
 #include "surface/mesh/polygons.h"
 
 namespace relief {
@@ -84,24 +85,6 @@ class EdgeGrid {
 
     double cell_;
     std::unordered_map<Cell, std::vector<uint32_t>, CellHash> cells_;
-};
-
-/// Which points have become one; the lowest number stands for all.
-class PointSets {
-  public:
-    explicit PointSets(std::vector<uint32_t> representatives) : parents_(std::move(representatives)) {}
-
-    uint32_t find(uint32_t point) {
-        while (parents_[point] != point) point = parents_[point] = parents_[parents_[point]];
-        return point;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = find(a), b = find(b);
-        parents_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<uint32_t> parents_;
 };
 
 /// Joins the open edges of a mesh that lie on each other.

@@ -10,6 +10,7 @@
 #include "relief/error.h"
 #include "surface/mesh/degenerate_faces.h"
 #include "surface/mesh/join_points.h"
+#include "surface/mesh/pinched_points.h"
 
 namespace relief {
 
@@ -185,7 +186,11 @@ Polygons make_polygons(const Mesh& mesh, Welding welding, std::span<const int> u
     for (Vec3f& p : result.positions) p = p + Vec3f{}; // -0 becomes 0
     check_faces(mesh, result.where);
     std::vector<uint32_t> representatives;
-    if (welding == Welding::joined_points) representatives = join_points(mesh).representatives;
+    if (welding == Welding::joined_points) {
+        representatives = join_points(mesh).representatives;
+        if (mesh.subdivision.scheme == SubdivisionScheme::catmark)
+            split_pinched_points(mesh, representatives);
+    }
 
     const std::vector<const UvSet*> wanted = choose_uv_sets(mesh, uv_sets);
     for (const UvSet* set : wanted) result.further_uvs.push_back({set->number, {}});
