@@ -1,4 +1,5 @@
 #include "viewer/surface_point.h"
+#include "base/udim.h"
 #include "common/vectors.h"
 #include "viewer/picture_layers.h"
 
@@ -86,15 +87,16 @@ int find_udim(const Scene& scene, const SurfacePoint& point) {
             middle.x += uv(k).x / float(corners), middle.y += uv(k).y / float(corners);
         const float column = std::floor(middle.x), row = std::floor(middle.y);
         const Vec2f p{point.uv.x + column, point.uv.y + row};
+        const std::optional<int> number = relief::find_udim(middle.x, middle.y);
         bool is_inside = false;
         for (size_t k = 2; k < corners; ++k) is_inside |= holds(uv(0), uv(k - 1), uv(k), p);
-        if (!is_inside) continue;
+        if (!is_inside || !number) continue;
         const Vec3f corner = mesh.positions[mesh.position_indices[first]];
         const Vec3f place =
             transform_vector(object.world_from_object, corner) + object.world_from_object.translation;
         if (const float distance = length(place - point.position); distance < nearest) {
             nearest = distance;
-            udim = 1001 + int(column) + 10 * int(row);
+            udim = *number;
         }
     }
     return udim;

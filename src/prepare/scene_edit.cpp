@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/content_hash.h"
+#include "base/udim.h"
 #include "image/texel_layout.h"
 #include "prepare/camera_enclosure.h"
 #include "prepare/editable_scene.h"
@@ -92,8 +93,9 @@ TiledTexels list_tiles_of(const PreparedScene& scene, const PreparedMap& tile) {
 
 /// Tiles from one to another, to the right in the image and below.
 std::array<int, 2> find_tile_offset(const PreparedMap& from, const PreparedMap& to) {
-    const int rows = (to.udim - 1001) / 10 - (from.udim - 1001) / 10;
-    return {(to.udim - 1001) % 10 - (from.udim - 1001) % 10, from.is_flipped ? rows : -rows};
+    const UdimSquare start = find_udim_square(from.udim), end = find_udim_square(to.udim);
+    const int rows = end.row - start.row;
+    return {end.column - start.column, from.is_flipped ? rows : -rows};
 }
 
 void join(std::vector<uint8_t>& all, const std::vector<uint8_t>& added) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/udim.h"
 #include "relief/error.h"
 #include "scene/material_inputs.h"
 
@@ -15,7 +16,6 @@ namespace relief {
 
 namespace {
 
-constexpr int kLastUdim = 9999;
 constexpr float kFarthestUv = 1e6f;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& message, const std::string& hint = {}) {
@@ -34,8 +34,8 @@ void check_tiles(const std::string& where, const InputTexture& texture) {
         refuse(where, fmt::format("has {} tiles", texture.tiles.size()), "one, unless is_udim is set");
     std::set<int> seen;
     for (const MapTile& tile : texture.tiles) {
-        if (texture.is_udim && (tile.udim < 1001 || tile.udim > kLastUdim))
-            refuse(where, fmt::format("tile {} is not in [1001, {}]", tile.udim, kLastUdim));
+        if (texture.is_udim && (tile.udim < kFirstUdim || tile.udim > kLastUdim))
+            refuse(where, fmt::format("tile {} is not in [{}, {}]", tile.udim, kFirstUdim, kLastUdim));
         if (!seen.insert(tile.udim).second) refuse(where, fmt::format("tile {} is there twice", tile.udim));
         if (!tile.texture) refuse(where, fmt::format("tile {} has no texture", tile.udim));
         if (!has_finite_texels(*tile.texture))

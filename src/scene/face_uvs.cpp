@@ -1,6 +1,8 @@
 #include "scene/face_uvs.h"
 
-#include <cmath>
+#include <optional>
+
+#include "base/udim.h"
 
 namespace relief {
 
@@ -54,8 +56,7 @@ std::set<int> list_tiles(const Mesh& mesh) {
                 v += double(mesh.uvs[mesh.uv_indices[k]].y) / size;
             }
         first += size;
-        u = std::floor(u), v = std::floor(v);
-        if (u >= 0 && u <= 9 && v >= 0 && v < 1e6) tiles.insert(1001 + int(u) + 10 * int(v));
+        if (const std::optional<int> udim = find_udim(u, v)) tiles.insert(*udim);
     }
     return tiles;
 }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/udim.h"
 #include "relief/inspect.h"
 
 namespace relief {
@@ -47,10 +49,6 @@ TileSpan find_tile_span(std::span<const Vec2f> uvs) {
     return span;
 }
 
-int find_udim(double column, double row) {
-    return column >= 0 && column <= 9 && row >= 0 && row < 900 ? 1001 + int(column) + 10 * int(row) : 0;
-}
-
 TileUse find_tile_use(const Mesh& mesh) {
     TileUse use;
     std::vector<Vec2f> uvs;
@@ -67,8 +65,8 @@ TileUse find_tile_use(const Mesh& mesh) {
                      last_row = std::min(span.row1, span.row0 + kMostSquares);
         for (double row = span.row0; row <= last_row; ++row)
             for (double column = span.column0; column <= last_column; ++column)
-                if (const int udim = find_udim(column, row); udim != 0)
-                    use.tiles.insert(udim), has_tile = true;
+                if (const std::optional<int> udim = find_udim(column, row))
+                    use.tiles.insert(*udim), has_tile = true;
         if (!has_tile && use.outside++ == 0) use.first_outside = face;
     }
     return use;

@@ -23,9 +23,6 @@ struct TileSpan {
 /// belongs to the square of its middle.
 TileSpan find_tile_span(std::span<const Vec2f> uvs);
 
-/// UDIM number of a square; 0 where it has none: u < 0, u >= 10, v < 0 or beyond 9999.
-int find_udim(double column, double row);
-
 struct TileUse {
     std::set<int> tiles;              ///< numbers of all tiles that faces reach into
     size_t crossing = 0, outside = 0; ///< faces in several squares, and faces that reach into no tile

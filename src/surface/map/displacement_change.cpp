@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
+#include "base/udim.h"
 #include "scene/tile_use.h"
 #include "surface/map/displacement_map.h"
 #include "surface/map/texels.h"
@@ -49,10 +51,10 @@ float measure_steps(const DisplacementMap& map, const Texture& texture, const Te
 
 /// The tile of a square; Surface::kNoTile where the map has none there.
 uint8_t find_tile(const DisplacementMap& map, double column, double row) {
-    const int udim = find_udim(column, row);
+    const std::optional<int> udim = find_udim(column, row);
     uint8_t index = Surface::kNoTile;
     for (size_t k = 0; k < map.tiles.size(); ++k)
-        if (map.tiles[k].udim == udim) index = uint8_t(k);
+        if (udim && map.tiles[k].udim == *udim) index = uint8_t(k);
     return index;
 }
 

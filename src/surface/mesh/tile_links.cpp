@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "base/udim.h"
 #include "scene/tile_use.h"
 #include "surface/mesh/join_points.h"
 
@@ -52,7 +53,7 @@ class LinkFinder {
     }
 
     uint8_t find_tile(double column, double row) const {
-        const auto found = number_of_.find(find_udim(column, row));
+        const auto found = number_of_.find(find_udim(column, row).value_or(0));
         return found == number_of_.end() ? Surface::kNoTile : found->second;
     }
 

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "base/stop_request.h"
+#include "base/udim.h"
 #include "math/vec_double.h"
 #include "scene/tile_use.h"
 #include "surface/map/texels.h"
@@ -77,7 +78,8 @@ void UvIslands::add_face(std::span<const Vec2f> uvs, std::vector<Edge>& edges) {
     if (starts_.size() % kFacesALook == 0) stop_if_asked();
     Point offset{};
     if (displacement_.is_udim) {
-        offset = {double((udim_ - 1001) % 10), double((udim_ - 1001) / 10)};
+        const UdimSquare square = find_udim_square(udim_);
+        offset = {double(square.column), double(square.row)};
         const TileSpan span = find_tile_span(uvs);
         if (!(span.column0 <= offset.x && offset.x <= span.column1 && span.row0 <= offset.y &&
               offset.y <= span.row1))
