@@ -12,6 +12,7 @@
 #include "math/vec.h"
 #include "relief/convert.h"
 #include "relief/error.h"
+#include "scene/coordinate_limit.h"
 #include "scene/displacement_conventions.h"
 #include "surface/map/spline_coefficients.h"
 #include "surface/map/texels.h"
@@ -199,7 +200,7 @@ void check_reach(const Displacement& map, const std::string& file, const Field& 
     for (const Vec3f& d : field) {
         const double reach =
             std::max({std::fabs(double(d.x)), std::fabs(double(d.y)), std::fabs(double(d.z))});
-        if (!(reach <= kLargestDisplacement)) refuse_reach(map.name, file, reach);
+        if (!(reach <= kLargestCoordinate)) refuse_reach(map.name, file, reach);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "inspect/facts.h"
 #include "math/box.h"
 #include "relief/convert.h"
+#include "scene/coordinate_limit.h"
 #include "scene/displacement_conventions.h"
 #include "scene/face_uvs.h"
 
@@ -36,12 +37,12 @@ void find_bad_texels(const Displacement& map, const MapStatistics& statistics,
 void find_far_texels(const Displacement& map, const MapStatistics& statistics,
                      std::vector<Finding>& findings) {
     const double longest = statistics.largest * get_largest_scale(map);
-    if (!(longest > kLargestDisplacement)) return;
+    if (!(longest > kLargestCoordinate)) return;
     add_error(
         findings, "E-FAR",
         "a displacement of {:.3g} at {}, and a render refuses more than {:g}; paint over it, bake the map "
         "again or set displacement.scale",
-        longest, describe_place(statistics.largest_place, map), kLargestDisplacement);
+        longest, describe_place(statistics.largest_place, map), kLargestCoordinate);
 }
 
 double find_low(const MapStatistics& statistics) {

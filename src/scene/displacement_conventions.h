@@ -31,8 +31,6 @@ std::span<const std::string_view> get_preset_names();
 /// Throws bad_input for an unknown name, and for ZBrush, whose codes say no order by themselves.
 const MapPreset& find_preset(std::string_view name);
 
-/// No coordinate of a displacement is larger: squares of lengths stay finite.
-inline constexpr double kLargestDisplacement = 1e18;
 /// Throws bad_input for a displacement of this length, which a texel of `file` has.
 [[noreturn]] void refuse_reach(const std::string& displacement, const std::string& file, double reach);
 

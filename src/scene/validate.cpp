@@ -16,6 +16,7 @@
 #include "relief/error.h"
 #include "relief/scene.h"
 #include "scene/check_input_textures.h"
+#include "scene/coordinate_limit.h"
 #include "scene/displacement_conventions.h"
 #include "scene/left_out_mesh.h"
 #include "scene/object_names.h"
@@ -56,8 +57,6 @@ void check_light_group(const std::string& where, const std::string& name) {
 }
 
 constexpr float kHuge = 3e38f;
-/// Squares of distances between points up to here are still floats.
-constexpr float kFarthest = 1e18f;
 
 float largest_component(const Vec3f& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
@@ -142,8 +141,8 @@ void validate_mesh(const Mesh& mesh, size_t index) {
             if (!std::isfinite(component)) fail(where, fmt::format("tangent {} is not finite", i));
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         if (!is_finite(mesh.positions[i])) fail(where, fmt::format("position {} is not finite", i));
-        if (largest_component(mesh.positions[i]) > kFarthest)
-            fail(where, fmt::format("position {} is farther out than {:g}", i, kFarthest),
+        if (largest_component(mesh.positions[i]) > kLargestCoordinate)
+            fail(where, fmt::format("position {} is farther out than {:g}", i, kLargestCoordinate),
                  "use another unit of length");
     }
     check_uvs(where, mesh.uvs);
@@ -319,8 +318,8 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
         fail(where, fmt::format("material {} does not exist", object.material));
     if (!invert(object.world_from_object))
         fail(where, "the transform is singular or not finite", "no scale factor may be 0");
-    if (find_farthest(object.world_from_object, mesh_boxes[object.mesh]) > kFarthest)
-        fail(where, fmt::format("the transform carries it farther out than {:g}", kFarthest),
+    if (find_farthest(object.world_from_object, mesh_boxes[object.mesh]) > kLargestCoordinate)
+        fail(where, fmt::format("the transform carries it farther out than {:g}", kLargestCoordinate),
              "use a smaller scale or translation");
     const Mesh& mesh = scene.meshes[object.mesh];
     if (is_left_out(mesh)) return;
@@ -339,12 +338,12 @@ void check_object(const Scene& scene, const std::vector<Box>& mesh_boxes, const 
              "export the mesh with texture coordinates");
 }
 
-/// Squares of lengths from here to kFarthest are floats without loss.
+/// Squares of lengths from here to kLargestCoordinate are floats without loss.
 constexpr float kSmallestFace = 1e-18f;
 
 void check_face(const std::string& where, const char* what, float value) {
-    if (!(value >= kSmallestFace && value <= kFarthest))
-        fail(where, fmt::format("{} is {}, not in [{}, {}]", what, value, kSmallestFace, kFarthest),
+    if (!(value >= kSmallestFace && value <= kLargestCoordinate))
+        fail(where, fmt::format("{} is {}, not in [{}, {}]", what, value, kSmallestFace, kLargestCoordinate),
              fmt::format("a light of this type needs a {} above 0", what));
 }
 

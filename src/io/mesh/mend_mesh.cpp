@@ -7,12 +7,11 @@
 #include <fmt/format.h>
 
 #include "math/vec.h"
+#include "scene/coordinate_limit.h"
 
 namespace relief {
 
 namespace {
-
-constexpr float kFarthest = 1e18f; // as validate_mesh() has it
 
 bool is_usable_normal(const Vec3f& n) {
     const float sum = std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z);
@@ -22,7 +21,7 @@ bool is_usable_normal(const Vec3f& n) {
 bool is_finite_uv(const Vec2f& uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }
 
 bool is_usable_position(const Vec3f& p) {
-    return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= kFarthest && p == p;
+    return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= kLargestCoordinate && p == p;
 }
 
 /// Twice the area vector of the face whose corners begin at `begin`.

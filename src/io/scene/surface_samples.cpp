@@ -6,6 +6,7 @@
 
 #include "io/scene/asset_cache.h"
 #include "math/affine.h"
+#include "scene/coordinate_limit.h"
 #include "scene/displacement_conventions.h"
 
 namespace relief {
@@ -75,7 +76,7 @@ Vec3f fetch_nearest(const Displacement& map, const Vec2f& uv) {
 /// A camera cannot be placed by values that a render refuses.
 void check_reach(const Displacement& map, const Vec3f& d) {
     const double reach = std::max({std::fabs(double(d.x)), std::fabs(double(d.y)), std::fabs(double(d.z))});
-    if (reach > kLargestDisplacement) refuse_reach(map.name, map.tiles.front().texture->file, reach);
+    if (reach > kLargestCoordinate) refuse_reach(map.name, map.tiles.front().texture->file, reach);
 }
 
 Vec3f displace(const Displacement& map, const Vec2f& uv, const FaceFrame& face,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "relief/error.h"
+#include "scene/coordinate_limit.h"
 #include "scene/displacement_conventions.h"
 #include "surface/map/mip_chain.h"
 #include "surface/map/spline_coefficients.h"
@@ -91,7 +92,7 @@ void check_reach(const std::string& name, const DisplacementMap& map, const std:
                  const ChannelRange& range) {
     for (const Vec3f& row : map.matrix) {
         const double reach = find_row_reach(map, row, range);
-        if (!(reach <= kLargestDisplacement)) refuse_reach(name, file, reach);
+        if (!(reach <= kLargestCoordinate)) refuse_reach(name, file, reach);
     }
 }
 

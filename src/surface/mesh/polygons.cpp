@@ -8,6 +8,7 @@
 
 #include "math/vec.h"
 #include "relief/error.h"
+#include "scene/coordinate_limit.h"
 #include "surface/mesh/degenerate_faces.h"
 #include "surface/mesh/join_points.h"
 #include "surface/mesh/pinched_points.h"
@@ -16,7 +17,6 @@ namespace relief {
 
 namespace {
 
-constexpr float kLargestCoordinate = 1e18f; // squares of lengths stay finite
 constexpr float kLargestUv = 1e6f;
 
 [[noreturn]] void throw_bad_face(const std::string& where, size_t face, std::string message,
