@@ -1,7 +1,9 @@
 #include "scene/tile_use.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -17,15 +19,43 @@ namespace relief {
 namespace {
 
 constexpr double kUvRounding = 1e-5; ///< that files with few digits bring with them
-constexpr double kMostSquares = 64;  ///< per axis: a face across more of them is no picture of any
 
-/// First and last square of an axis between two coordinates. Beyond a million there is no tile, and further
-/// out a number plus 1 would be the same number, so that loops over squares would not end.
+/// First and last square of an axis between two coordinates.
 std::pair<double, double> find_squares(double low, double high, double middle) {
-    const auto clip = [](double square) { return std::clamp(square, -1e6, 1e6); };
     const double first = std::floor(low + kUvRounding), last = std::ceil(high - kUvRounding) - 1;
-    return first <= last ? std::pair(clip(first), clip(last)) : std::pair(clip(middle), clip(middle));
+    return first <= last ? std::pair(first, last) : std::pair(middle, middle);
 }
+
+/// The tiles of many spans. Adding one takes the same time however many tiles it has.
+class TileSet {
+  public:
+    /// `span`: clipped.
+    void add(const TileSpan& span) {
+        const size_t left = size_t(span.column0), right = size_t(span.column1) + 1;
+        const size_t low = size_t(span.row0), high = size_t(span.row1) + 1;
+        if (changes_.empty()) changes_.resize(kWidth * size_t(kUdimRows + 1));
+        ++changes_[low * kWidth + left], --changes_[low * kWidth + right];
+        --changes_[high * kWidth + left], ++changes_[high * kWidth + right];
+    }
+
+    std::set<int> list() const {
+        std::set<int> tiles;
+        std::array<int64_t, kWidth> counts{}; // of spans in each column, below the row and in it
+        for (size_t row = 0; row * kWidth < changes_.size(); ++row) {
+            int64_t count = 0;
+            for (size_t column = 0; column < kWidth; ++column) {
+                count += counts[column] += changes_[row * kWidth + column];
+                const std::optional<int> udim = find_udim(double(column), double(row));
+                if (count > 0 && udim) tiles.insert(*udim);
+            }
+        }
+        return tiles;
+    }
+
+  private:
+    static constexpr size_t kWidth = kUdimColumns + 1;
+    std::vector<int64_t> changes_; ///< how many more spans a square is in than those before it, rows first
+};
 
 std::string count_faces(size_t count, const char* verb, const char* plural_verb) {
     return count == 1 ? fmt::format("1 face {}", verb) : fmt::format("{} faces {}", count, plural_verb);
@@ -49,8 +79,16 @@ TileSpan find_tile_span(std::span<const Vec2f> uvs) {
     return span;
 }
 
+TileSpan TileSpan::clip() const {
+    TileSpan clipped = *this;
+    clipped.column0 = std::max(column0, 0.0), clipped.column1 = std::min(column1, kUdimColumns - 1.0);
+    clipped.row0 = std::max(row0, 0.0), clipped.row1 = std::min(row1, kUdimRows - 1.0);
+    return clipped;
+}
+
 TileUse find_tile_use(const Mesh& mesh) {
     TileUse use;
+    TileSet tiles;
     std::vector<Vec2f> uvs;
     size_t first = 0;
     for (size_t face = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face++]) {
@@ -60,15 +98,14 @@ TileUse find_tile_use(const Mesh& mesh) {
         if (uvs.empty()) continue;
         const TileSpan span = find_tile_span(uvs);
         if (!span.is_one() && use.crossing++ == 0) use.first_crossing = face;
-        bool has_tile = false;
-        const double last_column = std::min(span.column1, span.column0 + kMostSquares),
-                     last_row = std::min(span.row1, span.row0 + kMostSquares);
-        for (double row = span.row0; row <= last_row; ++row)
-            for (double column = span.column0; column <= last_column; ++column)
-                if (const std::optional<int> udim = find_udim(column, row))
-                    use.tiles.insert(*udim), has_tile = true;
-        if (!has_tile && use.outside++ == 0) use.first_outside = face;
+        const TileSpan clipped = span.clip();
+        if (find_udim(clipped.column0, clipped.row0) && clipped.column0 <= clipped.column1 &&
+            clipped.row0 <= clipped.row1)
+            tiles.add(clipped);
+        else if (use.outside++ == 0)
+            use.first_outside = face;
     }
+    use.tiles = tiles.list();
     return use;
 }
 

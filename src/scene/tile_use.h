@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/udim.h"
 #include "relief/scene.h"
 
 namespace relief {
@@ -17,6 +18,13 @@ struct TileSpan {
     double middle_column, middle_row; ///< square of the middle of the corners
 
     bool is_one() const { return column0 == column1 && row0 == row1; }
+    bool holds(const UdimSquare& square) const {
+        return square.column >= column0 && square.column <= column1 && square.row >= row0 &&
+               square.row <= row1;
+    }
+    /// The part where tiles have numbers, of at most kUdimColumns x kUdimRows squares. Where there is none, a
+    /// last column or row is less than the first one.
+    TileSpan clip() const;
 };
 
 /// Squares that the corners reach into by more than the rounding of uvs; a face that lies on a border alone

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "scene/tile_use.h"
 #include "surface/map/tile_texels.h"
@@ -149,6 +151,52 @@ TEST(UdimTiles, that_are_missing_displace_nothing_in_a_face_across_them) {
     EXPECT_FLOAT_EQ(evaluate_vertex(surface, 0, levels, 4, 8).z, 1);
     EXPECT_FLOAT_EQ(evaluate_vertex(surface, 0, levels, 5, 8).z, 0);
     EXPECT_FLOAT_EQ(evaluate_vertex(surface, 0, levels, 14, 8).z, 0);
+}
+
+/// However many tiles a face lies across, those that the map has displace their samples.
+TEST(UdimTiles, displace_their_part_of_a_face_across_many_squares) {
+    const Displacement displacement = make_tiles({{1001, test::make_constant(256, 4, {0, 0, 1})}});
+    const PatchLevels levels{7, {7, 7, 7, 7}};
+    for (const auto& [from, to] : {std::pair(0.0f, 7.0f),
+                                   {0.0f, 8.0f},
+                                   {0.0f, 10.0f},
+                                   {-100.0f, 5.0f},
+                                   {0.0f, 100.0f},
+                                   {-3.0f, 70.0f}}) {
+        Mesh mesh = test::make_plane();
+        for (Vec2f& uv : mesh.uvs) uv.x = from + (to - from) * uv.x;
+        const Surface surface = make_surface(mesh, &displacement, {});
+        for (uint32_t i = 0; i <= 128; ++i) {
+            const float u = from + (to - from) * float(i) / 128;
+            if (std::min(std::fabs(u), std::fabs(u - 1)) < 0.02f) continue; // filters read beyond the border
+            EXPECT_FLOAT_EQ(evaluate_vertex(surface, 0, levels, i, 8).z, u > 0 && u < 1) << u << ' ' << to;
+        }
+    }
+}
+
+TEST(UdimTiles, of_wide_faces_are_listed_from_the_first_to_the_last) {
+    const auto find_use = [](Vec2f low, Vec2f high) {
+        Mesh mesh = test::make_plane();
+        for (Vec2f& uv : mesh.uvs) uv = {low.x + (high.x - low.x) * uv.x, low.y + (high.y - low.y) * uv.y};
+        return find_tile_use(mesh);
+    };
+    const TileUse left = find_use({-100, 0}, {5, 1});
+    EXPECT_EQ(left.outside, 0u) << "a part of it lies in tiles";
+    EXPECT_EQ(left.crossing, 1u);
+    EXPECT_EQ(left.tiles, (std::set{1001, 1002, 1003, 1004, 1005}));
+    EXPECT_EQ(find_use({8, 0}, {1000, 2}).tiles, (std::set{1009, 1010, 1019, 1020}));
+    EXPECT_EQ(find_use({-1e6f, -1e6f}, {1e6f, 1e6f}).tiles.size(), size_t(kLastUdim - kFirstUdim + 1));
+    EXPECT_EQ(find_use({-9, 0}, {-2, 1}).outside, 1u);
+    EXPECT_EQ(find_use({10, 0}, {12, 1}).outside, 1u);
+    EXPECT_EQ(find_use({0, 900}, {1, 902}).outside, 1u);
+    EXPECT_EQ(find_use({0, -5}, {1, -3}).outside, 1u);
+}
+
+TEST(UdimTiles, of_several_faces_add_up) {
+    Mesh mesh = make_two_quads(3);
+    EXPECT_EQ(find_tile_use(mesh).tiles, (std::set{1004, 1005}));
+    for (size_t k = 4; k < 8; ++k) mesh.uvs[mesh.uv_indices[k]].y += 2;
+    EXPECT_EQ(find_tile_use(mesh).tiles, (std::set{1004, 1025}));
 }
 
 TEST(UdimTiles, that_meet_in_a_corner_are_read_on_the_way_through_a_third_one) {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <tuple>
 #include <utility>
 
-#include "base/udim.h"
 #include "scene/tile_use.h"
 #include "surface/map/displacement_map.h"
 #include "surface/map/texels.h"
@@ -49,15 +47,6 @@ float measure_steps(const DisplacementMap& map, const Texture& texture, const Te
     return std::sqrt(largest);
 }
 
-/// The tile of a square; Surface::kNoTile where the map has none there.
-uint8_t find_tile(const DisplacementMap& map, double column, double row) {
-    const std::optional<int> udim = find_udim(column, row);
-    uint8_t index = Surface::kNoTile;
-    for (size_t k = 0; k < map.tiles.size(); ++k)
-        if (udim && map.tiles[k].udim == *udim) index = uint8_t(k);
-    return index;
-}
-
 uint64_t count_texels(const DisplacementMap& map, uint8_t tile) {
     const Texture& texture = *map.tiles[tile].texture;
     return uint64_t(texture.width) * texture.height;
@@ -66,22 +55,19 @@ uint64_t count_texels(const DisplacementMap& map, uint8_t tile) {
 } // namespace
 
 TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& uvs) {
-    constexpr double kMostSquares = 8; // per axis; a face across more takes the tile of its middle
     const TileSpan span = find_tile_span(uvs);
-    const Vec2f middle{float(span.middle_column), float(span.middle_row)};
-    TileChoice choice{find_tile(map, span.middle_column, span.middle_row), middle};
-    if (span.is_one() ||
-        !(span.column1 - span.column0 < kMostSquares && span.row1 - span.row0 < kMostSquares))
-        return choice;
-    for (double row = span.row0; row <= span.row1; ++row)
-        for (double column = span.column0; column <= span.column1; ++column) {
-            const uint8_t index = find_tile(map, column, row);
-            if (index == Surface::kNoTile) continue;
-            if (choice.index != Surface::kNoTile &&
-                count_texels(map, index) <= count_texels(map, choice.index))
-                continue;
-            choice = {index, {float(column), float(row)}};
-        }
+    TileChoice choice{Surface::kNoTile, {float(span.middle_column), float(span.middle_row)}};
+    // At the same count of texels the tile of the middle comes first, then the first one of the map.
+    std::pair<uint64_t, bool> best{};
+    for (size_t k = 0; k < map.tiles.size(); ++k) {
+        const UdimSquare square = find_udim_square(map.tiles[k].udim);
+        const bool is_middle = square.column == span.middle_column && square.row == span.middle_row;
+        if (!is_middle && (span.is_one() || !span.holds(square))) continue;
+        const std::pair here(count_texels(map, uint8_t(k)), is_middle);
+        if (here <= best) continue;
+        best = here;
+        choice = {uint8_t(k), {float(square.column), float(square.row)}};
+    }
     return choice;
 }
 

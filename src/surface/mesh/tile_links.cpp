@@ -67,9 +67,7 @@ class LinkFinder {
     }
 
     void add_face(size_t first, const std::vector<Vec2f>& uvs) {
-        const TileSpan span = find_tile_span(uvs);
-        constexpr double kMostSquares = 64;
-        if (!(span.column1 - span.column0 < kMostSquares && span.row1 - span.row0 < kMostSquares)) return;
+        const TileSpan span = find_tile_span(uvs).clip();
         for (double row = span.row0; row <= span.row1; ++row)
             for (double column = span.column0; column <= span.column1; ++column) {
                 if (column < span.column1) link(column, row, true);
