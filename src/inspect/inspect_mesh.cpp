@@ -219,7 +219,7 @@ void describe_uvs(const MeshUvs& uvs, const Displacement* map, Inspection& resul
 }
 
 void find_missing_tiles(const MeshUvs& uvs, const Displacement& map, std::vector<Finding>& findings) {
-    const std::set<int> missing = find_missing_tiles(uvs.tile_use, map);
+    const std::set<int> missing = find_missing_tiles(uvs.tile_use.tiles, map.tiles);
     if (missing.empty()) return;
     std::set<int> found;
     for (const MapTile& tile : map.tiles) found.insert(tile.udim);

@@ -9,6 +9,7 @@
 
 #include "relief/inspect.h"
 #include "scene/face_uvs.h"
+#include "scene/texture_tiles.h"
 #include "scene/tile_use.h"
 #include "scene/uv_sets.h"
 #include "surface/mesh/degenerate_faces.h"
@@ -146,6 +147,7 @@ std::vector<std::string> find_scene_warnings(const Scene& scene, const ImageSett
                 warnings.push_back(std::move(warning));
         if (meshes.insert(object.mesh).second) warn_of_creases(mesh, warnings);
     }
+    for (std::string& warning : find_texture_tile_warnings(scene)) warnings.push_back(std::move(warning));
     return warnings;
 }
 

@@ -87,14 +87,21 @@ TileSpan TileSpan::clip() const {
 }
 
 TileUse find_tile_use(const Mesh& mesh) {
+    return find_tile_use(FaceUvs{mesh.face_sizes, mesh.uvs, mesh.uv_indices});
+}
+
+TileUse find_tile_use(const FaceUvs& faces) {
     TileUse use;
     TileSet tiles;
     std::vector<Vec2f> uvs;
     size_t first = 0;
-    for (size_t face = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face++]) {
+    for (size_t face = 0; face < faces.face_sizes.size(); first += faces.face_sizes[face++]) {
         uvs.clear();
-        for (size_t k = first; k < first + mesh.face_sizes[face] && k < mesh.uv_indices.size(); ++k)
-            if (mesh.uv_indices[k] < mesh.uvs.size()) uvs.push_back(mesh.uvs[mesh.uv_indices[k]]);
+        for (size_t k = first; k < first + faces.face_sizes[face] && k < faces.indices.size(); ++k) {
+            if (faces.indices[k] >= faces.uvs.size()) continue;
+            const Vec2f& uv = faces.uvs[faces.indices[k]];
+            uvs.push_back({uv.x * faces.scale.x + faces.offset.x, uv.y * faces.scale.y + faces.offset.y});
+        }
         if (uvs.empty()) continue;
         const TileSpan span = find_tile_span(uvs);
         if (!span.is_one() && use.crossing++ == 0) use.first_crossing = face;
@@ -109,10 +116,15 @@ TileUse find_tile_use(const Mesh& mesh) {
     return use;
 }
 
-std::set<int> find_missing_tiles(const TileUse& use, const Displacement& map) {
-    std::set<int> missing = use.tiles;
-    for (const MapTile& tile : map.tiles) missing.erase(tile.udim);
+std::set<int> find_missing_tiles(const std::set<int>& used, const std::vector<MapTile>& tiles) {
+    std::set<int> missing = used;
+    for (const MapTile& tile : tiles) missing.erase(tile.udim);
     return missing;
+}
+
+std::string describe_outside_faces(const TileUse& use) {
+    return fmt::format("{} outside of all tiles (u from 0 to 10, v from 0), the first is face {}",
+                       count_faces(use.outside, "lies", "lie"), use.first_outside);
 }
 
 std::vector<std::string> describe_misplaced_faces(const TileUse& use) {
@@ -124,10 +136,8 @@ std::vector<std::string> describe_misplaced_faces(const TileUse& use) {
                         "their uvs into one",
                         count_faces(use.crossing, "lies", "lie"), use.first_crossing));
     if (use.outside > 0)
-        texts.push_back(
-            fmt::format("{} outside of all tiles (u from 0 to 10, v from 0), the first is face {}: "
-                        "no map can displace them; move their uvs into a tile",
-                        count_faces(use.outside, "lies", "lie"), use.first_outside));
+        texts.push_back(fmt::format("{}: no map can displace them; move their uvs into a tile",
+                                    describe_outside_faces(use)));
     return texts;
 }
 
@@ -135,7 +145,7 @@ std::vector<std::string> find_tile_warnings(const Mesh& mesh, const Displacement
     std::vector<std::string> warnings;
     if (!map.is_udim) return warnings;
     const TileUse use = find_tile_use(mesh);
-    if (const std::set<int> missing = find_missing_tiles(use, map); !missing.empty())
+    if (const std::set<int> missing = find_missing_tiles(use.tiles, map.tiles); !missing.empty())
         warnings.push_back(
             fmt::format("displacement '{}' has no file for tile(s) {} of mesh '{}', which is not "
                         "displaced there: export the missing ones, or look at their names",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <span>
 #include <string>
@@ -37,11 +38,24 @@ struct TileUse {
     size_t first_crossing = 0, first_outside = 0; ///< index of the first, where there is one
 };
 
+/// One set of uvs of the faces of a mesh, as a texture reads it: times `scale`, plus `offset`.
+struct FaceUvs {
+    std::span<const uint32_t> face_sizes;
+    std::span<const Vec2f> uvs;
+    std::span<const uint32_t> indices; ///< one a corner
+    Vec2f scale{1, 1}, offset{};
+};
+
 /// Indices out of range and faces without uvs are left out.
+TileUse find_tile_use(const FaceUvs& faces);
+/// The same of the mesh's own uvs.
 TileUse find_tile_use(const Mesh& mesh);
 
-/// Numbers of the tiles that a mesh reaches into and that a map with tiles lacks.
-std::set<int> find_missing_tiles(const TileUse& use, const Displacement& map);
+/// Numbers of `used` tiles that are not among the tiles of a map.
+std::set<int> find_missing_tiles(const std::set<int>& used, const std::vector<MapTile>& tiles);
+
+/// "2 faces lie outside of all tiles (u from 0 to 10, v from 0), the first is face 3"; some must.
+std::string describe_outside_faces(const TileUse& use);
 
 /// Texts about the faces of a mesh that lie across tiles of a map or outside of all of them; without names.
 std::vector<std::string> describe_misplaced_faces(const TileUse& use);

@@ -19,7 +19,12 @@ std::vector<int> list_uv_sets(std::span<const Material> materials) {
 
 bool has_uv_set(const Mesh& mesh, int number) {
     if (number == mesh.uv_set && !mesh.uv_indices.empty()) return true;
-    return std::ranges::any_of(mesh.further_uvs, [&](const UvSet& set) { return set.number == number; });
+    return find_further_set(mesh, number) != nullptr;
+}
+
+const UvSet* find_further_set(const Mesh& mesh, int number) {
+    const auto found = std::ranges::find(mesh.further_uvs, number, &UvSet::number);
+    return found == mesh.further_uvs.end() ? nullptr : &*found;
 }
 
 std::string describe_uv_sets(const Mesh& mesh) {

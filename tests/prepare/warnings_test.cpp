@@ -120,6 +120,71 @@ TEST(Warnings, count_the_faces_without_uvs_in_a_set_that_a_texture_names) {
         << warnings[0];
 }
 
+/// A torus whose faces all lie in tile 1001, but for two: one in 1002, one outside of all tiles.
+Scene make_scene_with_texture_tiles() {
+    Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
+    scene.displacements.clear(), scene.objects[0].displacement = kNoIndex;
+    scene.environment.emplace();
+    Mesh& mesh = scene.meshes[0];
+    mesh.name = "body", mesh.uvs.clear(), mesh.uv_indices.clear();
+    for (size_t face = 0; face < mesh.face_sizes.size(); ++face) {
+        const float left = face == 5 ? 1.25f : face == 7 ? 12.25f : 0.25f;
+        for (const Vec2f& uv :
+             {Vec2f{left, 0.25f}, {left + 0.5f, 0.25f}, {left + 0.5f, 0.75f}, {left, 0.75f}})
+            mesh.uv_indices.push_back(uint32_t(mesh.uvs.size())), mesh.uvs.push_back(uv);
+    }
+    scene.materials.emplace_back().name = "paint";
+    scene.objects[0].material = 0;
+    scene.materials[0].textures = {{.input = MaterialInput::base_color,
+                                    .tiles = {{1001, test::make_random_map(8, 8, 0.1f, 1)}},
+                                    .is_udim = true}};
+    return scene;
+}
+
+TEST(Warnings, name_tiles_that_a_texture_lacks_and_faces_outside_of_all) {
+    Scene scene = make_scene_with_texture_tiles();
+    scene.objects.push_back(scene.objects[0]); // the same again is no other warning
+    const std::vector<std::string> warnings = prepare_scene(scene, {})->warnings;
+    ASSERT_EQ(warnings.size(), 2u);
+    EXPECT_NE(
+        warnings[0].find("the texture of base_color of material 'paint' has no file for tile(s) 1002 of "
+                         "mesh 'body'"),
+        std::string::npos)
+        << warnings[0];
+    EXPECT_NE(warnings[1].find("the texture of base_color of material 'paint' on mesh 'body': 1 face lies "
+                               "outside of all tiles (u from 0 to 10, v from 0), the first is face 7"),
+              std::string::npos)
+        << warnings[1];
+    scene.materials[0].textures[0].is_udim = false;
+    EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty()) << "it repeats";
+}
+
+TEST(Warnings, of_tiles_of_textures_go_by_the_uvs_that_are_read) {
+    Scene scene = make_scene_with_texture_tiles();
+    InputTexture& texture = scene.materials[0].textures[0];
+    texture.uv_scale = {0.05f, 1}; // all into the first tile
+    EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());
+    texture.uv_offset = {0, -3};
+    EXPECT_NE(prepare_scene(scene, {})->warnings[0].find("24 faces lie outside of all tiles"),
+              std::string::npos);
+    texture.uv_offset = {2, 1};
+    EXPECT_NE(prepare_scene(scene, {})->warnings[0].find("tile(s) 1013 of mesh"), std::string::npos);
+}
+
+TEST(Warnings, of_tiles_of_textures_go_by_the_uv_set_that_a_texture_names) {
+    Scene scene = make_scene_with_texture_tiles();
+    Mesh& mesh = scene.meshes[0];
+    mesh.further_uvs = {{3, mesh.uvs, mesh.uv_indices}};
+    for (Vec2f& uv : mesh.further_uvs[0].uvs) uv = {uv.x - std::floor(uv.x), uv.y + 2};
+    InputTexture& texture = scene.materials[0].textures[0];
+    texture.uv_set = 3;
+    const std::vector<std::string> warnings = prepare_scene(scene, {})->warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("tile(s) 1021 of mesh"), std::string::npos) << warnings[0];
+    texture.tiles[0].udim = 1021;
+    EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());
+}
+
 TEST(Warnings, say_when_nothing_gives_light_or_is_there) {
     const auto prepare = [](const std::function<void(Scene&)>& change) {
         Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
