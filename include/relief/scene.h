@@ -19,7 +19,7 @@ namespace relief {
 inline constexpr int kMaxPictureSize = 65536; ///< pixels per side
 inline constexpr int kMaxSamples = 1 << 20;   ///< per pixel
 inline constexpr int kMaxBounces = 1000;
-inline constexpr int kMaxMapTiles = 254; ///< images of one displacement map
+inline constexpr int kMaxMapTiles = 10000; ///< images of one displacement map
 inline constexpr int kMaxThreads = 4096;
 inline constexpr int kMaxSubdivisionLevel = 8;
 inline constexpr int kAutoSubdivisionLevel = -1;

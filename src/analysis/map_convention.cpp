@@ -292,7 +292,7 @@ std::optional<Guess<DisplacementSpace>> guess_tile_by_seams(const std::set<int>&
     double smallest = 1e9;
     size_t k = 0;
     for (const int tile : tiles) {
-        MapSamples kept = keep_tile(samples, uint8_t(k++));
+        MapSamples kept = keep_tile(samples, TileIndex(k++));
         std::optional<Guess<DisplacementSpace>> guess = guess_space_by_seams(kept.seams);
         if (!guess) continue;
         const double gap = std::min(measure_object_gap(kept.seams), measure_best_tangent_gap(kept.seams));

@@ -71,7 +71,7 @@ MapSamples sample_map(const Surface& surface) {
     return samples;
 }
 
-MapSamples keep_tile(const MapSamples& samples, uint8_t tile) {
+MapSamples keep_tile(const MapSamples& samples, TileIndex tile) {
     MapSamples kept;
     for (const MapSample& place : samples.places)
         if (place.tile == tile) kept.places.push_back(place);

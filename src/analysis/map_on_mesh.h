@@ -13,7 +13,7 @@ namespace relief {
 struct MapSample {
     Vec3f value;
     Frame frame;
-    uint8_t tile = Surface::kNoTile; ///< of the surface's map
+    TileIndex tile = Surface::kNoTile; ///< of the surface's map
 };
 
 /// Both sides of a point on a uv seam.
@@ -30,7 +30,7 @@ struct MapSamples {
 MapSamples sample_map(const Surface& surface);
 
 /// Those that lie in one tile of the map, on both sides of a seam.
-MapSamples keep_tile(const MapSamples& samples, uint8_t tile);
+MapSamples keep_tile(const MapSamples& samples, TileIndex tile);
 
 /// Those of at most `most` edges, spread over all seams, of a surface in any space.
 std::vector<SeamSample> sample_seams(const Surface& surface, size_t most);

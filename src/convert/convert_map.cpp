@@ -136,7 +136,7 @@ void grow(Field& field, std::vector<uint8_t>& is_known, uint32_t width, uint32_t
 
 struct FramedTile {
     const Surface& surface;
-    uint8_t tile;
+    TileIndex tile;
     ProgressFunction on_progress;
 };
 
@@ -254,11 +254,11 @@ Displacement convert_map(const Displacement& from, const Displacement& to, const
         const double half = target_frames ? 0.5 : 0.9;
         if (source_frames)
             field =
-                change_to_object({*source_frames, uint8_t(k), make_part(tile_progress, 0.05, half)}, field);
+                change_to_object({*source_frames, TileIndex(k), make_part(tile_progress, 0.05, half)}, field);
         Misses misses;
         if (target_frames)
             field = change_to_tangent(
-                {*target_frames, uint8_t(k), make_part(tile_progress, source_frames ? 0.5 : 0.05, 0.9)},
+                {*target_frames, TileIndex(k), make_part(tile_progress, source_frames ? 0.5 : 0.05, 0.9)},
                 field, misses);
         if (warnings && misses.count > 0) warnings->push_back(misses.describe(from.tiles[k].udim));
         if (from.flip_v != to.flip_v) turn_rows(field, source.width);

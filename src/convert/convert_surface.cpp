@@ -114,7 +114,7 @@ class SurfaceCutter {
         const auto& uvs = surface_.uvs;
         Vec2f uv = (uvs[quad.vertex[0]] * (1 - u) + uvs[quad.vertex[1]] * u) * (1 - v) +
                    (uvs[quad.vertex[3]] * (1 - u) + uvs[quad.vertex[2]] * u) * v;
-        const uint8_t tile = surface_.tile(quad.vertex[0]);
+        const TileIndex tile = surface_.tile(quad.vertex[0]);
         if (surface_.vertex_tiles.empty() || tile == Surface::kNoTile) return uv;
         const int number = surface_.map.tiles[tile].udim - 1001;
         return {uv.x + float(number % 10), uv.y + float(number / 10)};

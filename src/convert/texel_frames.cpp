@@ -82,7 +82,7 @@ TexelFrame blend_frames(const std::array<VertexData, 4>& corners, float u, float
 
 class FrameVisitor {
   public:
-    FrameVisitor(const Surface& surface, uint8_t tile)
+    FrameVisitor(const Surface& surface, TileIndex tile)
         : surface_(surface),
           texture_(*surface.map.tiles[tile].texture),
           distances_(size_t(texture_.width) * texture_.height, std::numeric_limits<float>::infinity()) {}
@@ -122,7 +122,7 @@ class FrameVisitor {
 
 } // namespace
 
-void visit_texel_frames(const Surface& surface, uint8_t tile,
+void visit_texel_frames(const Surface& surface, TileIndex tile,
                         const std::function<void(uint32_t, uint32_t, const TexelFrame&)>& visit,
                         const ProgressFunction& on_progress) {
     FrameVisitor visitor(surface, tile);

@@ -21,7 +21,7 @@ struct TexelFrame {
 
 /// Calls `visit(x, y, frame)` for the texels of a tile that a patch covers or touches (up to 1.5 texels
 /// beside it), again where another patch is nearer: the last call counts. `surface` needs tangent frames.
-void visit_texel_frames(const Surface& surface, uint8_t tile,
+void visit_texel_frames(const Surface& surface, TileIndex tile,
                         const std::function<void(uint32_t x, uint32_t y, const TexelFrame& frame)>& visit,
                         const ProgressFunction& on_progress);
 

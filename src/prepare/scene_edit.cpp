@@ -179,7 +179,7 @@ template <class Visit> void SceneEditor::visit_users(const Texture& texture, con
     for (uint32_t index = 0; index < scene_->surfaces.size(); ++index) {
         const Surface& surface = scene_->surfaces[index];
         for (size_t tile = 0; tile < surface.map.tiles.size(); ++tile)
-            if (surface.map.tiles[tile].texture.get() == &texture) visit(index, surface, uint8_t(tile));
+            if (surface.map.tiles[tile].texture.get() == &texture) visit(index, surface, TileIndex(tile));
     }
 }
 
@@ -231,7 +231,7 @@ void SceneEditor::paint(const MapEdit& edit, size_t named, std::vector<Reading>&
         all = mips->update(*map.texture, changed);
         all.insert(all.begin(), changed);
     }
-    visit_users(*map.texture, [&](uint32_t index, const Surface& surface, uint8_t tile) {
+    visit_users(*map.texture, [&](uint32_t index, const Surface& surface, TileIndex tile) {
         readings.push_back({index, tile, rectangles.at(surface.map.tiles[tile].mips.get())});
     });
     update_splines(prepared.texture, changed, readings);
@@ -247,7 +247,7 @@ void SceneEditor::update_splines(const std::shared_ptr<const Texture>& texels, c
         const std::optional<TexelRectangle> reached = update(*image.texture);
         if (!reached) return;
         image.pyramid->update(*image.texture, *reached);
-        visit_users(*image.texture, [&](uint32_t index, const Surface&, uint8_t tile) {
+        visit_users(*image.texture, [&](uint32_t index, const Surface&, TileIndex tile) {
             readings.push_back({index, tile, {*reached}});
         });
     };
@@ -262,7 +262,7 @@ void SceneEditor::update_splines(const std::shared_ptr<const Texture>& texels, c
         const TiledTexels tiles = list_tiles_of(*scene_, map);
         for (size_t k = 0; k < tiles.maps.size(); ++k) {
             const PreparedMap& other = *tiles.maps[k];
-            const TileSurroundings surroundings{tiles.map, uint8_t(k)};
+            const TileSurroundings surroundings{tiles.map, TileIndex(k)};
             follow(other, [&](Texture& coefficients) {
                 return update_spline_beside(*other.texture, other.form, changed, find_tile_offset(other, map),
                                             coefficients, surroundings);

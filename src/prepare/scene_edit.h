@@ -57,7 +57,7 @@ class SceneEditor {
     /// What a surface reads of an image, and where that has changed, in the image and its copies.
     struct Reading {
         uint32_t surface;
-        uint8_t tile;
+        TileIndex tile;
         std::vector<TexelRectangle> rectangles;
     };
     struct EditableMap {

@@ -127,7 +127,7 @@ void make_coefficients_of_tiles(const Scene& scene, std::span<const uint32_t> me
     const DisplacementMap texels = make_texel_map(displacement, links);
     for (size_t k = 0; k < maps.size(); ++k) {
         PreparedMap& map = maps[k];
-        const TileSurroundings surroundings{texels, uint8_t(k)};
+        const TileSurroundings surroundings{texels, TileIndex(k)};
         map.coefficients = is_linked ? make_spline(map.texture, map.form, &surroundings)
                                      : splines.get_or_make(map.texture, map.form);
         map.has_neighbours = is_linked;

@@ -65,7 +65,7 @@ struct DeviceScene::Arrays {
     std::vector<PackedFrame> frames;
     std::vector<std::array<uint32_t, 4>> quads, overrides;
     std::vector<uint32_t> dominants, levels, primitive_ids, override_bits;
-    std::vector<uint8_t> vertex_tiles;
+    std::vector<TileIndex> vertex_tiles;
     std::vector<NodeTexels> nodes;
     std::vector<Box> surface_boxes;
     std::vector<uint32_t> surface_roots;
@@ -250,14 +250,14 @@ void DeviceScene::add_map(const Surface& surface, Arrays& arrays) {
     data.first_neighbour = map.neighbours.empty() ? kNone : uint32_t(arrays.override_bits.size());
     has_tile_borders_ |= !map.neighbours.empty();
     for (const TileNeighbours& beside : map.neighbours)
-        arrays.override_bits.push_back(uint32_t(beside[0]) | uint32_t(beside[1]) << 8 |
-                                       uint32_t(beside[2]) << 16 | uint32_t(beside[3]) << 24);
+        for (size_t k = 0; k < beside.size(); k += 2)
+            arrays.override_bits.push_back(uint32_t(beside[k]) | uint32_t(beside[k + 1]) << 16);
     // Tiles of a map must be consecutive, so tiles shared with another map are listed again.
     data.first_tile = uint32_t(tables_.textures.size());
     data.tile_count = uint32_t(map.tiles.size());
     for (uint32_t mip = 0; mip <= (map.is_filtered ? scalar::kMaxMip : 0); ++mip)
         for (size_t tile = 0; tile < map.tiles.size(); ++tile) {
-            const Texture& image = map.image(uint8_t(tile), mip).texture;
+            const Texture& image = map.image(TileIndex(tile), mip).texture;
             const scalar::TextureData texture = tables_.textures[texture_index(&image)];
             tables_.textures.push_back(texture);
         }
@@ -416,7 +416,7 @@ void DeviceScene::upload(const Device& device, Arrays& arrays) {
         buffer.upload(bytes);
         buffers_.push_back({number, std::move(buffer)});
     };
-    arrays.vertex_tiles.resize((arrays.vertex_tiles.size() + 3) / 4 * 4);
+    arrays.vertex_tiles.resize((arrays.vertex_tiles.size() + 1) / 2 * 2);
     add(scalar::kBindInstances, "instances", TexelFormat::none, tables_.instances);
     add(scalar::kBindSurfaces, "surfaces", TexelFormat::none, tables_.surfaces);
     add(scalar::kBindMaps, "maps", TexelFormat::none, tables_.maps);

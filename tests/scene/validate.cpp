@@ -111,8 +111,8 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
         s.displacements[0].is_udim = true;
         s.displacements[0].tiles.resize(tiles, s.displacements[0].tiles[0]);
     };
-    EXPECT_EQ(complaint([&](Scene& s) { spread(s, 254); }), "accepted");
-    EXPECT_HAS(complaint([&](Scene& s) { spread(s, 255); }), "has 255 tiles");
+    EXPECT_EQ(complaint([&](Scene& s) { spread(s, 10000); }), "accepted");
+    EXPECT_HAS(complaint([&](Scene& s) { spread(s, 10001); }), "has 10001 tiles");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.axis = {0, 0, 2}; }), "no permutation");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].axes.sign[1] = 0; }), "sign");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].scale.y = kNan; }), "scale");

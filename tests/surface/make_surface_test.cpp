@@ -100,6 +100,30 @@ TEST(MakeSurface, udim_tiles_displace_their_own_patches_only) {
     EXPECT_EQ(surface.uvs[surface.quads[2].vertex[0]], (Vec2f{0, 0}));
 }
 
+TEST(MakeSurface, maps_have_hundreds_of_tiles) {
+    constexpr int kTiles = 700;
+    Mesh mesh;
+    Displacement displacement;
+    displacement.is_udim = true;
+    for (int k = 0; k < kTiles; ++k) {
+        const float u = float(k % 10), v = float(k / 10);
+        const uint32_t first = uint32_t(mesh.positions.size());
+        for (const Vec2f& p :
+             {Vec2f{u, v}, Vec2f{u + 0.9f, v}, Vec2f{u + 0.9f, v + 0.9f}, Vec2f{u, v + 0.9f}})
+            mesh.positions.push_back({p.x, p.y, 0});
+        test::add_face(mesh, {first, first + 1, first + 2, first + 3},
+                       {{u, v}, {u + 0.9f, v}, {u + 0.9f, v + 0.9f}, {u, v + 0.9f}});
+        // In falling order, and the one with number 300 is missing.
+        const int number = kTiles - 1 - k;
+        if (number != 300)
+            displacement.tiles.push_back(
+                {1001 + number, test::make_constant(1, 1, {0, 0, float(number + 1)})});
+    }
+    const Surface surface = make_surface(mesh, &displacement, {});
+    for (uint32_t k = 0; k < uint32_t(kTiles); ++k)
+        EXPECT_FLOAT_EQ(evaluate_vertex(surface, k, {1, {1, 1, 1, 1}}, 1, 1).z, k == 300 ? 0 : float(k + 1));
+}
+
 TEST(MakeSurface, world_space_maps_go_through_the_inverse_of_the_object) {
     const Affine world_from_object = compose(make_rotation_degrees({0, 90, 0}), make_scale({2, 2, 2}));
     Displacement displacement = test::make_displacement(test::make_constant(2, 2, {0, 1, 4}));

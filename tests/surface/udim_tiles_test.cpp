@@ -205,7 +205,7 @@ TEST(UdimTiles, that_meet_in_a_corner_are_read_on_the_way_through_a_third_one) {
         map.tiles.push_back({udim, test::make_constant(4, 4, {0, 0, z}), nullptr, nullptr});
     };
     add(1001, 1), add(1002, 2), add(1012, 3);
-    constexpr uint8_t kNone = Surface::kNoTile;
+    constexpr TileIndex kNone = Surface::kNoTile;
     map.neighbours = {{kNone, 1, kNone, kNone}, {0, kNone, 2, kNone}, {kNone, kNone, kNone, 1}};
     EXPECT_EQ(read_beyond_tile(map, 0, 0, 4, -1)[2], 3);
     EXPECT_EQ(read_beyond_tile(map, 2, 0, -1, 4)[2], 1);

@@ -353,7 +353,7 @@ HWY_NOINLINE inline void make_points(const cpu::PointBatch& batch, size_t first,
 
     const cpu::TraceHit& any = batch.hits[batch.order[first]];
     const Surface& surface = batch.scene.surfaces[batch.scene.instances[any.instance].surface];
-    const uint8_t tile = surface.tile(surface.quads[any.patch].vertex[0]);
+    const TileIndex tile = surface.tile(surface.quads[any.patch].vertex[0]);
     const uint32_t mips = surface.packed_mips(any.patch);
     const MapLanes from{surface.map,
                         {tile, scalar::packed_mip(mips, scalar::kMipInside)},

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
+#include "base/udim.h"
 #include "scene/tile_use.h"
 #include "surface/map/displacement_map.h"
 #include "surface/map/texels.h"
@@ -47,7 +49,7 @@ float measure_steps(const DisplacementMap& map, const Texture& texture, const Te
     return std::sqrt(largest);
 }
 
-uint64_t count_texels(const DisplacementMap& map, uint8_t tile) {
+uint64_t count_texels(const DisplacementMap& map, TileIndex tile) {
     const Texture& texture = *map.tiles[tile].texture;
     return uint64_t(texture.width) * texture.height;
 }
@@ -58,16 +60,20 @@ TileChoice choose_tile(const DisplacementMap& map, const std::array<Vec2f, 4>& u
     const TileSpan span = find_tile_span(uvs);
     TileChoice choice{Surface::kNoTile, {float(span.middle_column), float(span.middle_row)}};
     // At the same count of texels the tile of the middle comes first, then the first one of the map.
-    std::pair<uint64_t, bool> best{};
-    for (size_t k = 0; k < map.tiles.size(); ++k) {
-        const UdimSquare square = find_udim_square(map.tiles[k].udim);
-        const bool is_middle = square.column == span.middle_column && square.row == span.middle_row;
-        if (!is_middle && (span.is_one() || !span.holds(square))) continue;
-        const std::pair here(count_texels(map, uint8_t(k)), is_middle);
-        if (here <= best) continue;
-        best = here;
-        choice = {uint8_t(k), {float(square.column), float(square.row)}};
-    }
+    std::tuple<uint64_t, bool, int> best{};
+    const auto consider = [&](double column, double row) {
+        const std::optional<int> udim = find_udim(column, row);
+        const TileIndex tile = udim ? map.find_tile(*udim) : Surface::kNoTile;
+        if (tile == Surface::kNoTile) return;
+        const bool is_middle = column == span.middle_column && row == span.middle_row;
+        const std::tuple here(count_texels(map, tile), is_middle, -int(tile));
+        if (here > best) best = here, choice = {tile, {float(column), float(row)}};
+    };
+    consider(span.middle_column, span.middle_row);
+    if (span.is_one()) return choice;
+    const TileSpan clipped = span.clip();
+    for (double row = clipped.row0; row <= clipped.row1; ++row)
+        for (double column = clipped.column0; column <= clipped.column1; ++column) consider(column, row);
     return choice;
 }
 
@@ -142,7 +148,7 @@ double DisplacementChange::find_change(const std::array<Vec2f, 4>& uvs, const Ve
 
 /// The same as measure_steps() for a rectangle of a tile's grid that reaches into other tiles, or beyond
 /// them.
-double DisplacementChange::find_step_across_tiles(uint8_t tile, const std::array<int64_t, 2>& columns,
+double DisplacementChange::find_step_across_tiles(TileIndex tile, const std::array<int64_t, 2>& columns,
                                                   const std::array<int64_t, 2>& rows) const {
     const Texture& texture = *map_.tiles[tile].texture;
     if (columns[1] - columns[0] > kMostSteps || rows[1] - rows[0] > kMostSteps ||

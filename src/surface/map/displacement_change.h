@@ -13,7 +13,7 @@ namespace relief {
 
 /// Image of a map that a patch reads first, and the offset of that image's tile.
 struct TileChoice {
-    uint8_t index = 0;
+    TileIndex index = 0;
     Vec2f offset{};
 };
 
@@ -47,7 +47,7 @@ class DisplacementChange {
         std::vector<std::atomic<float>> steps; ///< largest step to a neighbour; negative: not known yet
     };
     float find_step(size_t tile, uint32_t x, uint32_t y) const;
-    double find_step_across_tiles(uint8_t tile, const std::array<int64_t, 2>& columns,
+    double find_step_across_tiles(TileIndex tile, const std::array<int64_t, 2>& columns,
                                   const std::array<int64_t, 2>& rows) const;
     float find_step_by_blocks(size_t tile, const TexelRectangle& texels) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -62,7 +63,12 @@ double find_row_reach(const DisplacementMap& map, const Vec3f& row, const Channe
 
 } // namespace
 
-DisplacementMap::ImageView DisplacementMap::image(uint8_t tile, uint32_t mip) const {
+TileIndex DisplacementMap::find_tile(int udim) const {
+    const auto found = std::ranges::lower_bound(udims, udim, {}, &std::pair<int, TileIndex>::first);
+    return found != udims.end() && found->first == udim ? found->second : Surface::kNoTile;
+}
+
+DisplacementMap::ImageView DisplacementMap::image(TileIndex tile, uint32_t mip) const {
     const Tile& own = tiles[tile];
     if (mip == 0 || !own.mips) return {*own.texture, *own.pyramid};
     const MipChain::Copy& copy = own.mips->copy(mip);
@@ -114,7 +120,7 @@ double find_longest_displacement(const DisplacementMap& map) {
 
 bool has_links(const std::vector<TileNeighbours>& neighbours) {
     return std::ranges::any_of(neighbours, [](const TileNeighbours& beside) {
-        return std::ranges::any_of(beside, [](uint8_t tile) { return tile != Surface::kNoTile; });
+        return std::ranges::any_of(beside, [](TileIndex tile) { return tile != Surface::kNoTile; });
     });
 }
 
@@ -145,19 +151,21 @@ DisplacementMap make_displacement_map(const Displacement& displacement, const Af
     if (displacement.tiles.empty()) throw_bad_map(displacement, "has no map", "name an image file");
     if (displacement.tiles.size() > size_t(kMaxMapTiles))
         throw_bad_map(displacement, fmt::format("has {} tiles", displacement.tiles.size()),
-                      "at most 254 are possible");
+                      fmt::format("at most {} are possible", kMaxMapTiles));
     map.neighbours = std::move(neighbours);
     const DisplacementMap texels = make_texel_map(displacement, map.neighbours);
     for (size_t k = 0; k < displacement.tiles.size(); ++k) {
         const MapTile& tile = displacement.tiles[k];
         if (!tile.texture)
             throw_bad_map(displacement, fmt::format("tile {} has no image", tile.udim), "load it first");
-        const TileSurroundings surroundings{texels, uint8_t(k)};
+        const TileSurroundings surroundings{texels, TileIndex(k)};
         const std::shared_ptr<const Texture> texture =
             make_spline(tile.texture, make_spline_form(displacement),
                         has_links(map.neighbours) ? &surroundings : nullptr);
         map.tiles.push_back({tile.udim, texture, pyramids.get_or_build(texture), nullptr});
     }
+    for (size_t k = 0; k < map.tiles.size(); ++k) map.udims.emplace_back(map.tiles[k].udim, TileIndex(k));
+    std::ranges::sort(map.udims);
     check_reach(displacement.name, map);
     return map;
 }

@@ -9,6 +9,7 @@
 
 #include "relief/scene.h"
 #include "surface/map/texel_range.h"
+#include "surface/map/tile_index.h"
 
 namespace relief {
 
@@ -30,7 +31,7 @@ struct SplineForm {
 /// become coefficients, and their neighbours.
 struct TileSurroundings {
     const DisplacementMap& map;
-    uint8_t tile;
+    TileIndex tile;
 };
 
 SplineForm make_spline_form(const Displacement& displacement);

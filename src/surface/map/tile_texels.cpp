@@ -12,7 +12,7 @@ namespace relief {
 namespace {
 
 /// Unlike DisplacementMap::image(), also of maps whose bounds are not made yet.
-const Texture& get_texture(const DisplacementMap& map, uint8_t tile, uint32_t mip) {
+const Texture& get_texture(const DisplacementMap& map, TileIndex tile, uint32_t mip) {
     const DisplacementMap::Tile& own = map.tiles[tile];
     return mip == 0 || !own.mips ? *own.texture : *own.mips->copy(mip).texture;
 }
@@ -20,9 +20,10 @@ const Texture& get_texture(const DisplacementMap& map, uint8_t tile, uint32_t mi
 constexpr size_t kLeft = 0, kRight = 1, kAbove = 2, kBelow = 3; ///< entries of TileNeighbours
 
 /// Steps to the tile beside in one axis, if `at` lies outside of [0, size) and there is one.
-bool step(const DisplacementMap& map, uint8_t& tile, int64_t& at, int64_t size, size_t before, size_t after) {
+bool step(const DisplacementMap& map, TileIndex& tile, int64_t& at, int64_t size, size_t before,
+          size_t after) {
     if (at >= 0 && at < size) return false;
-    const uint8_t next = map.neighbours[tile][at < 0 ? before : after];
+    const TileIndex next = map.neighbours[tile][at < 0 ? before : after];
     if (next == Surface::kNoTile) return false;
     at += at < 0 ? size : -size;
     tile = next;
@@ -95,7 +96,7 @@ int64_t floor_divide(int64_t a, int64_t b) { return a >= 0 ? a / b : -((b - 1 - 
 
 } // namespace
 
-TilePlace find_tile_place(const DisplacementMap& map, uint8_t tile, int64_t x, int64_t y, int64_t width,
+TilePlace find_tile_place(const DisplacementMap& map, TileIndex tile, int64_t x, int64_t y, int64_t width,
                           int64_t height) {
     TilePlace place{tile, x, y, false};
     for (int k = 0; k < scalar::kMostTileSteps; ++k)
@@ -113,7 +114,7 @@ std::array<float, 4> read_place(const DisplacementMap& map, uint32_t mip, const 
                         find_between(place.y, height, image.height));
 }
 
-std::array<float, 4> read_beyond_tile(const DisplacementMap& map, uint8_t tile, uint32_t mip, int64_t x,
+std::array<float, 4> read_beyond_tile(const DisplacementMap& map, TileIndex tile, uint32_t mip, int64_t x,
                                       int64_t y) {
     const Texture& home = get_texture(map, tile, mip);
     const int64_t width = home.width, height = home.height;
@@ -128,7 +129,7 @@ std::array<float, 4> read_beyond_tile(const DisplacementMap& map, uint8_t tile, 
     return read_place(map, mip, {place.tile, column, row, true}, width, height);
 }
 
-TileRanges find_tile_ranges(const DisplacementMap& map, uint8_t tile, uint32_t mip,
+TileRanges find_tile_ranges(const DisplacementMap& map, TileIndex tile, uint32_t mip,
                             const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows) {
     constexpr int64_t kMostCells = 8; // per axis; for larger rectangles all tiles count
     const Texture& home = get_texture(map, tile, mip);
@@ -138,8 +139,8 @@ TileRanges find_tile_ranges(const DisplacementMap& map, uint8_t tile, uint32_t m
     TileRanges ranges;
     if ((right - left + 1) > kMostCells || (bottom - top + 1) > kMostCells) {
         for (size_t k = 0; k < map.tiles.size(); ++k) {
-            const Texture& image = get_texture(map, uint8_t(k), mip);
-            ranges.parts.push_back({uint8_t(k), {0, 0, image.width - 1, image.height - 1}});
+            const Texture& image = get_texture(map, TileIndex(k), mip);
+            ranges.parts.push_back({TileIndex(k), {0, 0, image.width - 1, image.height - 1}});
         }
         ranges.is_outside_read = true;
         return ranges;

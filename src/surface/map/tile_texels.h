@@ -12,13 +12,13 @@ namespace relief {
 
 /// A place in texels of one tile's grid, which continues beyond its borders, and the tile that it is in.
 struct TilePlace {
-    uint8_t tile = 0;
+    TileIndex tile = 0;
     int64_t x = 0, y = 0;   ///< counted from that tile, still in texels of the first one's grid
     bool is_inside = false; ///< no tile has the place where this is false: `tile` is the last one on the way
 };
 
 /// The tile that texel (x, y) of the grid of `tile` lies in; the grid has width x height texels per tile.
-TilePlace find_tile_place(const DisplacementMap& map, uint8_t tile, int64_t x, int64_t y, int64_t width,
+TilePlace find_tile_place(const DisplacementMap& map, TileIndex tile, int64_t x, int64_t y, int64_t width,
                           int64_t height);
 
 /// The texel at a place inside of a tile; the grid has width x height texels per tile.
@@ -28,12 +28,12 @@ std::array<float, 4> read_place(const DisplacementMap& map, uint32_t mip, const 
 /// Texel (x, y) of the grid of copy `mip` of a tile, outside of it; for maps with `neighbours`. Tiles of
 /// another size are read bilinearly. Where no tile is, the last one on the way continues by the map's wrap
 /// mode for find_tile_margin() texels; beyond them the result is the midlevel.
-std::array<float, 4> read_beyond_tile(const DisplacementMap& map, uint8_t tile, uint32_t mip, int64_t x,
+std::array<float, 4> read_beyond_tile(const DisplacementMap& map, TileIndex tile, uint32_t mip, int64_t x,
                                       int64_t y);
 
 /// Texels of one tile that a rectangle of another one's grid reads.
 struct TileRange {
-    uint8_t tile;
+    TileIndex tile;
     TexelRectangle texels;
 };
 struct TileRanges {
@@ -42,7 +42,7 @@ struct TileRanges {
 };
 
 /// What read_beyond_tile() and reads inside may read for the places [columns] x [rows] (inclusive), or more.
-TileRanges find_tile_ranges(const DisplacementMap& map, uint8_t tile, uint32_t mip,
+TileRanges find_tile_ranges(const DisplacementMap& map, TileIndex tile, uint32_t mip,
                             const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows);
 
 /// Whether all of [columns] x [rows] (inclusive) lies in the image.

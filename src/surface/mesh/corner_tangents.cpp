@@ -15,7 +15,7 @@ namespace {
 
 /// What tile choice took off the uvs, so that tiles join as they do in the mesh.
 Vec2f find_tile_offset(const Surface& surface, uint32_t vertex) {
-    const uint8_t tile = surface.tile(vertex);
+    const TileIndex tile = surface.tile(vertex);
     if (tile >= surface.map.tiles.size()) return {};
     const int number = surface.map.tiles[tile].udim - 1001;
     return {float(number % 10), float(number / 10)};

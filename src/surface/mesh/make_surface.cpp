@@ -27,7 +27,7 @@ class VertexSplitter {
         Vec2f uv{};
         Vec3f normal{}, bitangent{};
         std::array<float, 4> tangent{};
-        uint8_t tile = 0;
+        TileIndex tile = 0;
         float handedness = 1;
         friend bool operator==(const Attributes&, const Attributes&) = default;
     };

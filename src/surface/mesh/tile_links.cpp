@@ -21,7 +21,7 @@ class LinkFinder {
   public:
     LinkFinder(const Mesh& mesh, const std::vector<MapTile>& tiles, bool flip_v)
         : mesh_(mesh), flip_v_(flip_v), points_(join_points(mesh).representatives), links_(tiles.size()) {
-        for (size_t k = 0; k < tiles.size(); ++k) number_of_[tiles[k].udim] = uint8_t(k);
+        for (size_t k = 0; k < tiles.size(); ++k) number_of_[tiles[k].udim] = TileIndex(k);
         for (TileNeighbours& links : links_) links.fill(Surface::kNoTile);
     }
 
@@ -52,15 +52,15 @@ class LinkFinder {
                mesh_.position_indices[corner] < mesh_.positions.size();
     }
 
-    uint8_t find_tile(double column, double row) const {
+    TileIndex find_tile(double column, double row) const {
         const auto found = number_of_.find(find_udim(column, row).value_or(0));
         return found == number_of_.end() ? Surface::kNoTile : found->second;
     }
 
     /// Links the squares at (column, row) and to its right or, with `is_column` false, above it in uv.
     void link(double column, double row, bool is_column) {
-        const uint8_t a = find_tile(column, row),
-                      b = is_column ? find_tile(column + 1, row) : find_tile(column, row + 1);
+        const TileIndex a = find_tile(column, row),
+                        b = is_column ? find_tile(column + 1, row) : find_tile(column, row + 1);
         if (a == Surface::kNoTile || b == Surface::kNoTile) return;
         const size_t to_b = is_column ? 1 : flip_v_ ? 3 : 2, to_a = is_column ? 0 : flip_v_ ? 2 : 3;
         links_[a][to_b] = b, links_[b][to_a] = a;
@@ -103,7 +103,7 @@ class LinkFinder {
     const Mesh& mesh_;
     const bool flip_v_;
     const std::vector<uint32_t> points_;            ///< that surfaces have in place of the mesh's
-    std::map<int, uint8_t> number_of_;              ///< of tiles, by their UDIM number
+    std::map<int, TileIndex> number_of_;            ///< of tiles, by their UDIM number
     std::map<Border, std::array<double, 2>> edges_; ///< squares of the first faces at edges along borders
     std::vector<TileNeighbours> links_;
 };

@@ -78,7 +78,7 @@ HWY_INLINE void evaluate_edges(const Surface& surface, uint32_t patch, const Map
 
 HWY_INLINE bool has_one_tile(const Surface& surface, uint32_t patch) {
     const Quad quad = surface.quads[patch];
-    const uint8_t tile = surface.tile(quad.vertex[0]);
+    const TileIndex tile = surface.tile(quad.vertex[0]);
     bool is_same = true;
     for (int k = 0; k < 4; ++k)
         is_same &= surface.tile(surface.edge_line(patch, k).first) == tile &&

@@ -18,7 +18,7 @@ constexpr double kSmoothCells = 8; // a texel, where the surface is curved betwe
 
 /// Cells that a line is worth: one a texel, or more where the filter is smooth; a bicubic base bends where
 /// the map is smooth, too.
-double count_cells(const Surface& surface, uint8_t tile, const Vec2f& a, const Vec2f& b) {
+double count_cells(const Surface& surface, TileIndex tile, const Vec2f& a, const Vec2f& b) {
     const DisplacementMap& map = surface.map;
     const double least = surface.controls.empty() ? 0 : surface.most_base_cells;
     if (tile >= map.tiles.size()) return least;

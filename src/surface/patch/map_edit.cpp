@@ -33,7 +33,7 @@ bool meet(const TexelRectangle& a, const TexelRectangle& b) {
 /// Tells whether what lies between some vertices of one tile reads what has changed.
 class MapReads {
   public:
-    MapReads(const DisplacementMap& map, uint8_t tile, std::span<const TexelRectangle> changed)
+    MapReads(const DisplacementMap& map, TileIndex tile, std::span<const TexelRectangle> changed)
         : map_(map), tile_(tile), changed_(changed) {}
 
     /// In the map itself or in its copy `mip`; `reach` as for find_touched_patches.
@@ -83,7 +83,7 @@ class MapReads {
     }
 
     const DisplacementMap& map_;
-    uint8_t tile_;
+    TileIndex tile_;
     std::span<const TexelRectangle> changed_;
 };
 
@@ -120,7 +120,7 @@ void copy_texels(const Texture& source, Texture& target, uint32_t x, uint32_t y)
         }
 }
 
-std::vector<uint8_t> find_touched_patches(const Surface& surface, uint8_t tile,
+std::vector<uint8_t> find_touched_patches(const Surface& surface, TileIndex tile,
                                           std::span<const TexelRectangle> changed,
                                           std::span<const float> reach) {
     std::vector<uint8_t> touched(surface.patch_count());

@@ -16,7 +16,7 @@ void copy_texels(const Texture& source, Texture& target, uint32_t x, uint32_t y)
 /// edges may read a texel that has changed in tile `tile`: one rectangle for each image, the map itself first
 /// and then its copies, if it has any. With `reach`, a number a patch, also where it may read one beyond its
 /// sides, by that part of its length: as shading normals do, which are differences one cell wide.
-std::vector<uint8_t> find_touched_patches(const Surface& surface, uint8_t tile,
+std::vector<uint8_t> find_touched_patches(const Surface& surface, TileIndex tile,
                                           std::span<const TexelRectangle> changed,
                                           std::span<const float> reach = {});
 

@@ -72,7 +72,8 @@ CornerFrame blend_line(const CornerFrame& a, const CornerFrame& b, double s, boo
 /// What the displacement by one image is bounded with, and the sizes that rounding errors grow with.
 struct Footprint {
     const DisplacementMap* map;
-    uint8_t tile, mip;
+    TileIndex tile;
+    uint8_t mip;
     double largest_position = 0, largest_u = 0, largest_v = 0;
 
     void include(const Vec3f& p) {

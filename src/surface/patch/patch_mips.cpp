@@ -37,22 +37,22 @@ class MipChooser {
     }
 
   private:
-    bool has_map(uint8_t tile) const { return tile < surface_.map.tiles.size(); }
+    bool has_map(TileIndex tile) const { return tile < surface_.map.tiles.size(); }
 
-    double count_texels(uint8_t tile, const Vec2f& a, const Vec2f& b) const {
+    double count_texels(TileIndex tile, const Vec2f& a, const Vec2f& b) const {
         const Texture& texture = *surface_.map.tiles[tile].texture;
         return compute_length((double(b.x) - a.x) * texture.width, (double(b.y) - a.y) * texture.height);
     }
 
     /// Smallest copy whose texels are not larger than a cell of a line at `level`.
-    uint32_t choose(uint8_t tile, double texels, int level) const {
+    uint32_t choose(TileIndex tile, double texels, int level) const {
         const auto& chain = surface_.map.tiles[tile].mips;
         const int most = chain ? int(std::min(chain->count(), scalar::kMaxMip)) : 0;
         return uint32_t(std::clamp(int(std::floor(std::log2(std::max(texels, 1.0)))) - level, 0, most));
     }
 
     /// Texels across the middle of a patch, along u and along v.
-    std::array<double, 2> measure_middle(uint32_t patch, uint8_t tile) const {
+    std::array<double, 2> measure_middle(uint32_t patch, TileIndex tile) const {
         std::array<Vec2f, 4> uv;
         for (size_t k = 0; k < 4; ++k) uv[k] = surface_.uvs[surface_.quads[patch].vertex[k]];
         const auto middle = [&](size_t a, size_t b) {
@@ -63,7 +63,7 @@ class MipChooser {
     }
 
     uint32_t choose_detail(uint32_t patch) const {
-        const uint8_t tile = surface_.tile(surface_.quads[patch].vertex[0]);
+        const TileIndex tile = surface_.tile(surface_.quads[patch].vertex[0]);
         if (!surface_.map.has_autobump || !has_map(tile)) return 0;
         const auto [along_u, along_v] = measure_middle(patch, tile);
         const int level = int(std::ceil(std::log2(std::max({along_u, along_v, 1.0}))));
@@ -71,7 +71,7 @@ class MipChooser {
     }
 
     uint32_t choose_inside(uint32_t patch) const {
-        const uint8_t tile = surface_.tile(surface_.quads[patch].vertex[0]);
+        const TileIndex tile = surface_.tile(surface_.quads[patch].vertex[0]);
         if (!has_map(tile)) return 0;
         const auto [along_u, along_v] = measure_middle(patch, tile);
         int finest = 0;
@@ -82,7 +82,7 @@ class MipChooser {
     /// Also takes note of it at those ends that are displaced by the same tile.
     uint32_t choose_edge(uint32_t patch, int edge) {
         const Surface::EdgeLine line = surface_.edge_line(patch, edge);
-        const uint8_t tile = surface_.tile(line.first);
+        const TileIndex tile = surface_.tile(line.first);
         if (!has_map(tile)) return 0;
         int finest = 0;
         for (const LevelField* field : levels_)

@@ -23,7 +23,7 @@ Vec3f blend_quad(const Vec3f& c0, const Vec3f& c1, const Vec3f& c2, const Vec3f&
 
 } // namespace
 
-Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip) {
+Vec3f fetch_displacement(const DisplacementMap& map, TileIndex tile, const Vec2f& uv, uint32_t mip) {
     if (tile >= map.tiles.size()) return {};
     const Texture& texture = map.image(tile, mip).texture;
     const float u = uv.x * float(texture.width) - 0.5f;

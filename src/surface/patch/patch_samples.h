@@ -18,7 +18,8 @@ struct alignas(16) VertexData {
     Vec3f position{};
     Vec2f uv{};
     Frame frame{};
-    uint8_t tile = 0, mip = 0;
+    TileIndex tile = 0;
+    uint8_t mip = 0;
 };
 
 VertexData load_vertex(const Surface& surface, uint32_t vertex);

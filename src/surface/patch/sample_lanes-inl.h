@@ -50,7 +50,7 @@ HWY_INLINE bool is_within(const int32_t (&index)[16], int32_t end) {
 
 /// Image of a map that sixteen samples read.
 struct MapImage {
-    uint8_t tile;
+    TileIndex tile;
     uint32_t mip;
 };
 

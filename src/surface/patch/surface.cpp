@@ -22,7 +22,7 @@ size_t Surface::geometry_bytes() const {
     return further_bytes + positions.size() * sizeof(Vec3f) + copies.byte_count() +
            uvs.size() * sizeof(Vec2f) + frames.size() * sizeof(PackedFrame) +
            derivatives.size() * sizeof(derivatives[0]) + corner_tangents.size() * sizeof(corner_tangents[0]) +
-           vertex_tiles.size() + quads.byte_count() + mips.size() * sizeof(uint32_t) +
+           vertex_tiles.size() * sizeof(TileIndex) + quads.byte_count() + mips.size() * sizeof(uint32_t) +
            controls.size() * sizeof(InnerControls) + base_heights.size() * sizeof(float) +
            overrides.byte_count();
 }

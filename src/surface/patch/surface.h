@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formulas/control_points.h"
@@ -18,6 +19,7 @@
 #include "math/box.h"
 #include "relief/scene.h"
 #include "surface/map/bounds_pyramid.h"
+#include "surface/map/tile_index.h"
 #include "surface/mesh/base_tolerance.h"
 #include "surface/mesh/quad_list.h"
 #include "surface/patch/edge_overrides.h"
@@ -42,7 +44,7 @@ Vec3f unpack_normal(const PackedFrame& packed);
 class MipChain;
 
 /// Tiles to the left, to the right, above and below in the image; Surface::kNoTile where there is none.
-using TileNeighbours = std::array<uint8_t, 4>;
+using TileNeighbours = std::array<TileIndex, 4>;
 
 /// Displacement of raw texel values: matrix (value - midlevel), in (t, b, n) or object (x, y, z).
 struct DisplacementMap {
@@ -61,6 +63,7 @@ struct DisplacementMap {
     /// Per tile of a map with UDIM tiles, else empty: where a mesh goes on beyond it
     /// (surface/map/tile_texels.h).
     std::vector<TileNeighbours> neighbours;
+    std::vector<std::pair<int, TileIndex>> udims; ///< number and index of each tile, sorted
     std::array<Vec3f, 3> matrix; ///< rows; signed permutation, scale and (world space) the object's inverse
     Vec3f midlevel{};
     WrapMode wrap = WrapMode::clamp;
@@ -70,8 +73,10 @@ struct DisplacementMap {
     bool is_filtered = false, has_autobump = false;
     bool is_smooth = false; ///< texels are coefficients of a uniform bicubic B-spline; no mips
 
+    /// Index of a tile by its number; Surface::kNoTile where there is none.
+    TileIndex find_tile(int udim) const;
     /// Copy `mip` of a tile that exists; 0 is the tile's own image.
-    ImageView image(uint8_t tile, uint32_t mip) const;
+    ImageView image(TileIndex tile, uint32_t mip) const;
 };
 
 /// Control points of a bicubic patch beside its corners (less 4), bit-equal on shared edges.
@@ -97,7 +102,7 @@ struct Surface {
     /// Of normal maps, one a corner of each patch as in PackedFrame::tangent, or empty: no material has one.
     std::vector<std::array<uint32_t, 4>> corner_tangents;
     std::vector<PatchUvs> further_uvs;
-    std::vector<uint8_t> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
+    std::vector<TileIndex> vertex_tiles; ///< index into map.tiles, kNoTile: displaced by 0; empty: all tile 0
     QuadList quads;
     std::vector<InnerControls> controls; ///< one a patch: its base is bicubic; empty: bilinear
     /// Per dominant vertex, or empty: how far the smooth surface that the normals of a face stand for lies
@@ -112,7 +117,7 @@ struct Surface {
     /// Uvs of polygons are bilinear, as in the patches that they were cut from; else linear on each triangle.
     bool has_bilinear_uvs = false;
 
-    static constexpr uint8_t kNoTile = 255;
+    static constexpr TileIndex kNoTile = 0xffff;
     static_assert(kMaxMapTiles < kNoTile);
 
     uint32_t patch_count() const { return uint32_t(quads.size()); }
@@ -137,7 +142,9 @@ struct Surface {
         }
         return own;
     }
-    uint8_t tile(uint32_t vertex) const { return vertex_tiles.empty() ? uint8_t(0) : vertex_tiles[vertex]; }
+    TileIndex tile(uint32_t vertex) const {
+        return vertex_tiles.empty() ? TileIndex(0) : vertex_tiles[vertex];
+    }
 
     /// The two vertices whose straight line carries edge k of a patch: its own, or the dominant side's at a
     /// seam. Given lower dominant first, so that both sides of an edge run it the same way; `is_reversed`
@@ -224,7 +231,7 @@ Vec3f evaluate_vertex(const Surface& surface, uint32_t patch, const PatchLevels&
 
 /// Displacement vector (object space, before frames: raw d) at a local uv of copy `mip` of a tile: bilinear,
 /// or by the spline where the map is smooth.
-Vec3f fetch_displacement(const DisplacementMap& map, uint8_t tile, const Vec2f& uv, uint32_t mip = 0);
+Vec3f fetch_displacement(const DisplacementMap& map, TileIndex tile, const Vec2f& uv, uint32_t mip = 0);
 
 /// Point and two derivatives of the displaced patch for shading: derivatives of the map by central
 /// differences one cell of `level` wide, those of the base turned into the plane of the interpolated vertex

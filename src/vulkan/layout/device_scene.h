@@ -36,7 +36,7 @@ struct SurfaceData {
     uint first_vertex;   ///< of positions, one a dominant vertex
     uint dominant_count; ///< vertices from here on have their position at a dominant one
     uint first_uv, first_frame, first_dominant;
-    uint first_vertex_tile; ///< in bytes: four per word
+    uint first_vertex_tile; ///< in vertices: two per word
     uint first_quad;        ///< the tree index of the surface's first patch
     uint first_quad_texel;  ///< of quads
     uint has_wide_quads;    ///< one a texel, not two: there are more vertices than 16 bits count
@@ -64,8 +64,8 @@ struct MapData {
     uint first_tile; ///< index into textures; mip levels of the tiles follow consecutively
     uint tile_count;
     uint is_smooth; ///< texels are coefficients of a uniform bicubic B-spline
-    /// Of override_bits: per tile a word with the tiles to the left, to the right, above and below, a byte
-    /// each, 255 for none (TileNeighbours); kNone: no tile continues another one.
+    /// Index into override_bits of two words per tile: the tiles to its left and right, and those above and
+    /// below (TileNeighbours), 16 bits each, 0xffff for none; kNone: no tile continues another one.
     uint first_neighbour;
 };
 

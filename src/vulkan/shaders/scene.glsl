@@ -35,7 +35,7 @@ layout(set = 0, binding = kBindHalfTexels) uniform samplerBuffer half_texels;
 layout(constant_id = kSmoothConstant) const uint kHasSmooth = 0;
 
 #define kInfinity uintBitsToFloat(0x7f800000u)
-const uint kNoTile = 255u;
+const uint kNoTile = 0xffffu;
 
 vec3 load_position_at(const uint place) {
     int first = int(3u * place);
@@ -71,7 +71,7 @@ vec3 load_normal(const SurfaceData s, const uint vertex) {
 uint load_vertex_tile(const SurfaceData s, const uint vertex) {
     if (s.first_vertex_tile == kNone) return 0u;
     uint place = s.first_vertex_tile + vertex;
-    return (texelFetch(vertex_tiles, int(place >> 2u)).x >> (8u * (place & 3u))) & 255u;
+    return (texelFetch(vertex_tiles, int(place >> 1u)).x >> (16u * (place & 1u))) & 0xffffu;
 }
 
 bool is_seam(const SurfaceData s, const uint patch_index, const uint edge) {

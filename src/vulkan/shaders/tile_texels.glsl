@@ -16,8 +16,8 @@ struct MapImage {
 /// The tile beside one in the direction that leads to `at`, outside of [0, size); kNoTile where there is none.
 uint find_neighbour(const MapData map, const uint tile, const int at, const int size, const uint first_direction) {
     if (at >= 0 && at < size) return kNoTile;
-    uint beside = texelFetch(override_bits, int(map.first_neighbour + tile)).x;
-    return (beside >> (8u * (first_direction + (at < 0 ? 0u : 1u)))) & 255u;
+    uint beside = texelFetch(override_bits, int(map.first_neighbour + 2u * tile + first_direction / 2u)).x;
+    return at < 0 ? beside & 0xffffu : beside >> 16u;
 }
 
 bool is_near_tile(const int at, const int size) {
