@@ -1,11 +1,12 @@
-// Where the displaced surface of an object is, texel by texel.
+// Places of the texels of a map on the displaced surface of an object.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
-#include <vector>
 
 #include "relief/scene.h"
+#include "viewer/place_grid.h"
 #include "viewer/texel_frames.h"
 
 namespace relief::viewer {
@@ -17,25 +18,22 @@ class TexelPlaces {
     TexelPlaces(const Scene& scene, uint32_t object);
 
     /// World-space position of the middle of a texel by the map as it is now; nothing where no face has it.
-    /// `map` is the displacement of the object.
+    /// `map` is the displacement of the object. Draws grids when they are needed: one thread at a time.
     std::optional<Vec3f> find(const Displacement& map, const MapTile& tile, int x, int y) const;
 
-  private:
-    /// Positions of the surface without displacement, by rows of the map; NaN where there is none.
-    struct Grid {
-        int width = 0, height = 0;
-        std::vector<Vec3f> positions;
-    };
+    /// Tiles that have taken memory so far.
+    size_t drawn_tiles() const { return grids_.size(); }
 
-    void draw_base(const Mesh& base, const Displacement& map);
-    void draw_triangle(const Vec3f (&p)[3], const Vec2f (&uv)[3], const Displacement& map);
-    std::optional<Vec3f> find_base(const Grid& grid, float column, float row) const;
-    /// Of the world, from what the map means at a place of a tile.
+  private:
+    /// Draws it when it is asked for first, so that tiles that no dab reaches take no memory.
+    const PlaceGrid& find_grid(const Displacement& map, const MapTile& tile) const;
+    /// Turns what the map means at a place of a tile into the space of the object.
     Vec3f turn(const Displacement& map, const Vec3f& displacement, int udim, float column, float row) const;
 
     Affine world_from_object_;
-    std::map<int, Grid> grids_;         ///< by the number of the tile
-    std::optional<TexelFrames> frames_; ///< of maps in tangent space
+    Mesh base_;                              ///< the surface without displacement, in the space of the object
+    mutable std::map<int, PlaceGrid> grids_; ///< by the number of the tile
+    std::optional<TexelFrames> frames_;      ///< of maps in tangent space
 };
 
 } // namespace relief::viewer
