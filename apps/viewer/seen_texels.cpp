@@ -12,7 +12,7 @@ using namespace vectors;
 
 namespace {
 
-/// Two neighbours of which uv differs by more lie in tiles that are looked for anew.
+/// If the uvs of two neighbours differ by more, the tile of the second one is looked for anew.
 constexpr float kNearUv = 0.05f;
 
 /// Tiles of pixels, from left to right.
@@ -30,7 +30,8 @@ class TileFinder {
     const MapTile* find(int x, int y, const Vec2f& uv, const Vec3f& position) {
         if (!map_.is_udim) return &map_.tiles.front();
         const bool goes_on =
-            y == last_y_ && x == last_x_ + 1 && std::hypot(uv.x - last_uv_.x, uv.y - last_uv_.y) < kNearUv;
+            y == last_y_ && x == last_x_ + 1 && std::hypot(uv.x - last_uv_.x, uv.y - last_uv_.y) < kNearUv &&
+            std::floor(uv.x) == std::floor(last_uv_.x) && std::floor(uv.y) == std::floor(last_uv_.y);
         if (!goes_on) {
             SurfacePoint point = centre_;
             point.uv = uv, point.position = position;

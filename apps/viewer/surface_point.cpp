@@ -17,14 +17,92 @@ namespace {
 /// Lines begin there, in distances of the camera's target.
 constexpr float kNearPlane = 1e-3f;
 
-/// Whether a triangle of the uv plane holds a point.
-bool holds(const Vec2f& a, const Vec2f& b, const Vec2f& c, const Vec2f& p) {
-    const auto side = [&](const Vec2f& s, const Vec2f& e) {
-        return (e.x - s.x) * (p.y - s.y) - (e.y - s.y) * (p.x - s.x);
-    };
-    const float ab = side(a, b), bc = side(b, c), ca = side(c, a);
-    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
-}
+/// Uvs reach into a tile where they do so by more than the rounding of files with few digits.
+constexpr float kUvRounding = 1e-5f;
+
+/// The faces of an object around a uv that a picture shows. Such uvs are relative to a tile that their face
+/// reaches into.
+class FaceSearch {
+  public:
+    FaceSearch(const Scene& scene, const SurfacePoint& point)
+        : object_(scene.objects[point.object]),
+          mesh_(scene.meshes[object_.mesh]),
+          map_(scene.displacements[object_.displacement]),
+          point_(point),
+          udim_(map_.tiles.front().udim) {}
+
+    /// The tile of the place that is nearest to the point.
+    int run() {
+        for (size_t face = 0; face < mesh_.face_sizes.size(); first_ += mesh_.face_sizes[face++])
+            if (!mesh_.uv_indices.empty() && mesh_.uv_indices[first_] != kNoIndex)
+                add_face(mesh_.face_sizes[face]);
+        return udim_;
+    }
+
+  private:
+    Vec2f uv(size_t k) const { return mesh_.uvs[mesh_.uv_indices[first_ + k]]; }
+    Vec3f position(size_t k) const { return mesh_.positions[mesh_.position_indices[first_ + k]]; }
+
+    void add_face(size_t corners) {
+        Vec2f low = uv(0), high = low, middle{};
+        for (size_t k = 0; k < corners; ++k) {
+            low = {std::min(low.x, uv(k).x), std::min(low.y, uv(k).y)};
+            high = {std::max(high.x, uv(k).x), std::max(high.y, uv(k).y)};
+            middle = {middle.x + uv(k).x / float(corners), middle.y + uv(k).y / float(corners)};
+        }
+        const Vec2f square{std::floor(middle.x), std::floor(middle.y)};
+        const bool is_in_one = low.x > square.x - kUvRounding && high.x < square.x + 1 + kUvRounding &&
+                               low.y > square.y - kUvRounding && high.y < square.y + 1 + kUvRounding;
+        if (is_in_one)
+            add_place(corners, {point_.uv.x + square.x, point_.uv.y + square.y}, middle);
+        else
+            add_across(corners, low, high);
+    }
+
+    /// Adds a face across tiles, whose uvs are relative to any tile of the map that it reaches into.
+    void add_across(size_t corners, const Vec2f& low, const Vec2f& high) {
+        for (const MapTile& tile : map_.tiles) {
+            const UdimSquare square = find_udim_square(tile.udim);
+            const Vec2f place{point_.uv.x + float(square.column), point_.uv.y + float(square.row)};
+            if (place.x >= low.x && place.x <= high.x && place.y >= low.y && place.y <= high.y)
+                add_place(corners, place, place);
+        }
+    }
+
+    /// Looks whether a place of the uv plane lies in the face. `of_tile`: a uv in the tile of the place.
+    void add_place(size_t corners, const Vec2f& place, const Vec2f& of_tile) {
+        const std::optional<int> udim = relief::find_udim(of_tile.x, of_tile.y);
+        for (size_t k = 2; udim && k < corners; ++k) {
+            const std::optional<Vec3f> own = find_position(k, place);
+            if (!own) continue;
+            const Vec3f world =
+                transform_vector(object_.world_from_object, *own) + object_.world_from_object.translation;
+            if (const float distance = length(world - point_.position); distance < nearest_)
+                nearest_ = distance, udim_ = *udim;
+        }
+    }
+
+    /// The position at a place of the uv plane within triangle k of the face: corners 0, k - 1 and k.
+    std::optional<Vec3f> find_position(size_t k, const Vec2f& place) const {
+        const auto side = [&](const Vec2f& s, const Vec2f& e) {
+            return (e.x - s.x) * (place.y - s.y) - (e.y - s.y) * (place.x - s.x);
+        };
+        const Vec2f a = uv(0), b = uv(k - 1), c = uv(k);
+        const float ab = side(a, b), bc = side(b, c), ca = side(c, a), area = ab + bc + ca;
+        const bool is_inside = (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+        if (!is_inside) return std::nullopt;
+        if (area == 0) return position(0);
+        return (position(0) * bc + position(k - 1) * ca + position(k) * ab) * (1 / area);
+    }
+
+    const Object& object_;
+    const Mesh& mesh_;
+    const Displacement& map_;
+    const SurfacePoint& point_;
+    size_t first_ = 0; ///< first corner of the face
+    int udim_;
+    float nearest_ = std::numeric_limits<float>::infinity();
+};
 
 } // namespace
 
@@ -72,34 +150,8 @@ std::optional<std::pair<Vec2f, Vec2f>> project_line(const Camera& camera, const 
 }
 
 int find_udim(const Scene& scene, const SurfacePoint& point) {
-    const Object& object = scene.objects[point.object];
-    const Displacement& map = scene.displacements[object.displacement];
-    if (!map.is_udim) return map.tiles.front().udim;
-    const Mesh& mesh = scene.meshes[object.mesh];
-    int udim = map.tiles.front().udim;
-    float nearest = std::numeric_limits<float>::infinity();
-    for (size_t face = 0, first = 0; face < mesh.face_sizes.size(); first += mesh.face_sizes[face++]) {
-        const size_t corners = mesh.face_sizes[face];
-        if (mesh.uv_indices.empty() || mesh.uv_indices[first] == kNoIndex) continue;
-        const auto uv = [&](size_t k) { return mesh.uvs[mesh.uv_indices[first + k]]; };
-        Vec2f middle{};
-        for (size_t k = 0; k < corners; ++k)
-            middle.x += uv(k).x / float(corners), middle.y += uv(k).y / float(corners);
-        const float column = std::floor(middle.x), row = std::floor(middle.y);
-        const Vec2f p{point.uv.x + column, point.uv.y + row};
-        const std::optional<int> number = relief::find_udim(middle.x, middle.y);
-        bool is_inside = false;
-        for (size_t k = 2; k < corners; ++k) is_inside |= holds(uv(0), uv(k - 1), uv(k), p);
-        if (!is_inside || !number) continue;
-        const Vec3f corner = mesh.positions[mesh.position_indices[first]];
-        const Vec3f place =
-            transform_vector(object.world_from_object, corner) + object.world_from_object.translation;
-        if (const float distance = length(place - point.position); distance < nearest) {
-            nearest = distance;
-            udim = *number;
-        }
-    }
-    return udim;
+    const Displacement& map = scene.displacements[scene.objects[point.object].displacement];
+    return map.is_udim ? FaceSearch(scene, point).run() : map.tiles.front().udim;
 }
 
 } // namespace relief::viewer

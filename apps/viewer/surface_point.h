@@ -29,8 +29,8 @@ std::optional<SurfacePoint> find_surface_point(const ShownPicture& picture, floa
 std::optional<std::pair<Vec2f, Vec2f>> project_line(const Camera& camera, const Vec3f& a, const Vec3f& b,
                                                     int width, int height);
 
-/// The tile that a point's uv is of; 1001 of a map without tiles. Of several, that of the face around the uv
-/// which is nearest to the position.
+/// The tile that a point's uv is in; 1001 for a map without tiles. Where several faces are around the uv, the
+/// place that is nearest to the position counts.
 int find_udim(const Scene& scene, const SurfacePoint& point);
 
 } // namespace relief::viewer

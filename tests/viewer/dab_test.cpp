@@ -165,4 +165,46 @@ TEST(Dab, goes_on_across_a_seam_and_into_the_next_tile) {
     EXPECT_GT(largest[1], 0.8f);
 }
 
+/// Texels of both tiles are where the face has them, although it has one tile in the middle.
+TEST(Dab, paints_both_tiles_of_a_face_across_them) {
+    for (const bool is_one_face : {false, true}) {
+        Scene scene = make_bumpy_scene(DisplacementSpace::object);
+        Mesh& mesh = scene.meshes[0];
+        if (is_one_face) {
+            mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+            mesh.face_sizes = {4}, mesh.position_indices = {0, 1, 2, 3};
+        }
+        mesh.uvs.clear(), mesh.uv_indices.clear();
+        for (const uint32_t point : mesh.position_indices) {
+            const Vec3f p = mesh.positions[point];
+            mesh.uv_indices.push_back(uint32_t(mesh.uvs.size()));
+            mesh.uvs.push_back({(p.x + 1) * 0.6f + 0.2f, (p.y + 1) / 2});
+        }
+        scene.displacements[0].is_udim = true;
+        scene.displacements[0].tiles.push_back({1002, make_bumps(false)});
+        const ShownPicture picture = make_picture(scene, make_settings(1));
+        float x = 120.5f; // goes to the pixel at the border of the tiles
+        while (x < 230 && find_surface_point(picture, x, 80.5f)->position.x < 1.0f / 3) ++x;
+        const auto centre = find_surface_point(picture, x, 80.5f);
+        ASSERT_TRUE(centre);
+        float largest[2] = {};
+        for (const DabPiece& piece : find_dab_at(scene, picture, x, 20))
+            for (int row = piece.box.y0; row < piece.box.y1; ++row)
+                for (int column = piece.box.x0; column < piece.box.x1; ++column) {
+                    const float weight = piece.weight(column, row);
+                    ASSERT_TRUE(piece.udim == 1001 || piece.udim == 1002);
+                    float& own = largest[piece.udim - 1001];
+                    own = std::max(own, weight);
+                    const float u = float(piece.udim - 1001) + (float(column) + 0.5f) / 64,
+                                v = 1 - (float(row) + 0.5f) / 64;
+                    const Vec3f place{(u - 0.2f) / 0.6f - 1, 2 * v - 1, centre->position.z};
+                    if (weight > 0.1f)
+                        EXPECT_LE(length(place - centre->position), 1.1f * 20 * centre->pixel_size)
+                            << piece.udim << ' ' << column << ' ' << row;
+                }
+        EXPECT_GT(largest[0], 0.7f) << is_one_face;
+        EXPECT_GT(largest[1], 0.7f) << is_one_face;
+    }
+}
+
 } // namespace relief::viewer
