@@ -164,11 +164,13 @@ TEST(Warnings, of_tiles_of_textures_go_by_the_uvs_that_are_read) {
     InputTexture& texture = scene.materials[0].textures[0];
     texture.uv_scale = {0.05f, 1}; // all into the first tile
     EXPECT_TRUE(prepare_scene(scene, {})->warnings.empty());
-    texture.uv_offset = {0, -3};
-    EXPECT_NE(prepare_scene(scene, {})->warnings[0].find("24 faces lie outside of all tiles"),
-              std::string::npos);
-    texture.uv_offset = {2, 1};
-    EXPECT_NE(prepare_scene(scene, {})->warnings[0].find("tile(s) 1013 of mesh"), std::string::npos);
+    for (const auto& [offset, text] : {std::pair(Vec2f{0, -3}, "24 faces lie outside of all tiles"),
+                                       {Vec2f{2, 1}, "tile(s) 1013 of mesh"}}) {
+        texture.uv_offset = offset;
+        const std::vector<std::string> warnings = prepare_scene(scene, {})->warnings;
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_NE(warnings[0].find(text), std::string::npos) << warnings[0];
+    }
 }
 
 TEST(Warnings, of_tiles_of_textures_go_by_the_uv_set_that_a_texture_names) {
