@@ -15,7 +15,7 @@ using namespace vectors;
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kUvRounding = 1e-5; ///< that files with few digits bring with them
+constexpr double kUvRounding = 1e-5; ///< files with few digits have errors of this size
 
 /// Samples that may be visited for each sample of the grid and for each corner of the mesh: several times
 /// what a mesh without overlaps needs.
@@ -102,7 +102,8 @@ class TriangleDrawing {
     void draw_row(const Triangle& triangle, int y) {
         const auto& at = triangle.at;
         const double area = triangle.area, py = y + 0.5 - at[0].y;
-        // Of the second and the third corner: weight at the column of the first corner, and growth by column.
+        // The second and the third corner have these weights at the column of the first one, and this growth
+        // per column.
         const double b0 = -py * (at[2].x - at[0].x) / area, b1 = (at[2].y - at[0].y) / area;
         const double c0 = py * (at[1].x - at[0].x) / area, c1 = -(at[1].y - at[0].y) / area;
         const double margin = 1 / std::max(1.0, std::sqrt(std::fabs(area)));
@@ -123,7 +124,7 @@ class TriangleDrawing {
         visits_left_ -= std::max(0, columns.last - columns.first + 1);
     }
 
-    /// `weights`: of the second and the third corner.
+    /// `weights` are those of the second and the third corner.
     void put(const Triangle& triangle, int x, int y, bool is_inside, const Place& weights) {
         const size_t index = size_t(repeat(y, height_)) * size_t(width_) + size_t(repeat(x, width_));
         Vec3f& place = places_[index];

@@ -12,14 +12,23 @@ using namespace vectors;
 
 namespace {
 
-/// Texels a side: frames vary with the faces of the mesh, not with the texels of its map.
-constexpr uint32_t kFrameSide = 256;
+/// Texels per side: frames vary with the faces of the mesh, not with the texels of its map. Maps with many
+/// tiles have fewer of them in each, down to the least.
+constexpr uint32_t kMostSide = 256, kLeastSide = 64;
+constexpr size_t kMostTexels = size_t(1) << 20; ///< all tiles together have no more, or the least side
+
+uint32_t choose_side(size_t tiles) {
+    uint32_t side = kMostSide;
+    while (side > kLeastSide && tiles * side * side > kMostTexels) side /= 2;
+    return side;
+}
 
 Displacement make_constant_map(const Displacement& like, const Vec3f& value) {
+    const uint32_t side = choose_side(like.tiles.size());
     Texture texture;
-    texture.width = texture.height = kFrameSide;
+    texture.width = texture.height = side;
     texture.channel_count = 3;
-    texture.floats.resize(size_t(4) * kFrameSide * kFrameSide);
+    texture.floats.resize(size_t(4) * side * side);
     for (size_t k = 0; k < texture.floats.size(); k += 4) {
         texture.floats[k] = value.x, texture.floats[k + 1] = value.y, texture.floats[k + 2] = value.z;
         texture.floats[k + 3] = 1;
@@ -46,15 +55,17 @@ TexelFrames::TexelFrames(const Displacement& map, const Mesh& mesh) {
 }
 
 Vec3f TexelFrames::express(const Vec3f& direction, int udim, float column, float row) const {
-    const auto place = [](float share) {
-        return uint32_t(std::clamp(share * float(kFrameSide), 0.0f, float(kFrameSide - 1)));
+    const auto place = [](float share, uint32_t side) {
+        return uint32_t(std::clamp(share * float(side), 0.0f, float(side - 1)));
     };
     const float along[] = {direction.x, direction.y, direction.z};
     Vec3f sum{};
     for (size_t c = 0; c < 3; ++c)
         for (const MapTile& tile : axes_[c].tiles)
             if (tile.udim == udim)
-                sum = sum + read_texel(*tile.texture, place(column), place(row)) * along[c];
+                sum = sum + read_texel(*tile.texture, place(column, tile.texture->width),
+                                       place(row, tile.texture->height)) *
+                                along[c];
     return sum;
 }
 

@@ -1,8 +1,7 @@
 // How directions of an object's space lie in the tangent frames of a map, anywhere on the map.
 #pragma once
 
-#include <map>
-#include <memory>
+#include <cstdint>
 #include <vector>
 
 #include "relief/scene.h"
@@ -17,6 +16,9 @@ class TexelFrames {
     /// The components of `direction` along t, b and n at a place of a tile, both of [0, 1], rows from the
     /// top.
     Vec3f express(const Vec3f& direction, int udim, float column, float row) const;
+
+    /// Texels of one tile's frames, per side.
+    uint32_t side() const { return axes_.front().tiles.front().texture->width; }
 
   private:
     /// For x, y and z of the object a map of what they are in each frame.

@@ -102,6 +102,18 @@ TEST(TexelPlaces, draw_tiles_when_they_are_asked_for) {
     EXPECT_EQ(places.drawn_tiles(), 2u);
 }
 
+TEST(TexelFrames, of_many_tiles_take_no_more_than_those_of_a_few) {
+    Scene scene = make_bumpy_scene(DisplacementSpace::tangent);
+    Displacement& map = scene.displacements[0];
+    EXPECT_EQ(TexelFrames(map, scene.meshes[0]).side(), 256u);
+    map.is_udim = true;
+    for (int tile = 1002; tile < 1201; ++tile) map.tiles.push_back({tile, map.tiles[0].texture});
+    const TexelFrames frames(map, scene.meshes[0]);
+    EXPECT_EQ(frames.side(), 64u);
+    const Vec3f normal = frames.express({0, 0, 1}, 1001, 0.3f, 0.7f);
+    EXPECT_NEAR(normal.z, 1, 1e-5f);
+}
+
 TEST(PlaceGrid, of_a_tile_has_its_part_of_a_face_across_several) {
     const Mesh mesh = make_square({0.5f, 0}, {2.25f, 1});
     for (const int column : {0, 1, 2, 3}) {
