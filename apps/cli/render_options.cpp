@@ -293,6 +293,46 @@ void add_layers(std::span<const char* const> names, std::vector<std::string>& la
         if (std::find(layers.begin(), layers.end(), name) == layers.end()) layers.emplace_back(name);
 }
 
+/// --pixel goes with nothing that a picture is needed for.
+void check_pixel(const RenderOptions& o) {
+    if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
+                    o.settings.image.crop != Window{} || !o.settings.image.layers.empty() ||
+                    !o.edits.empty() || o.is_denoised || o.checkpoint.is_on()))
+        throw Error(ErrorKind::usage,
+                    {"--pixel explains one pixel and makes no picture", "--pixel",
+                     "leave out -o, --stats, --crop, --tile, --samples, --layers, --denoise, --edits, "
+                     "--checkpoint and --resume"});
+}
+
+void check_edits(const RenderOptions& o) {
+    refuse_link_loop(o.edits, ErrorKind::bad_input);
+    if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
+        throw Error(ErrorKind::usage,
+                    {std::filesystem::exists(o.edits) ? "not a plain file, which is read twice"
+                                                      : "there is no such file",
+                     "--edits " + o.edits, "-: standard input, which may be a pipe"});
+}
+
+/// No file is both read and written, or written twice, and all can be written. Checked before the scene is
+/// read, and again with all of its files.
+void check_outputs(const RenderOptions& o) {
+    const std::vector<std::string> files = {o.input.string(), o.mesh.displacement_map.string(),
+                                            o.mesh.environment.string(), o.edits};
+    keep_files(files, o.output), keep_files(files, o.statistics_file);
+    if (!o.statistics_file.empty() && find_place(o.output) == find_place(o.statistics_file))
+        throw Error(ErrorKind::usage, {"the picture and its statistics cannot be one file",
+                                       o.statistics_file.string(), "name another one for --stats"});
+    for (const std::filesystem::path& other : {o.output, o.statistics_file})
+        if (!o.aim.saved_scene.empty() && !other.empty() &&
+            find_place(o.aim.saved_scene) == find_place(other))
+            throw Error(ErrorKind::usage, {"the scene would be written over by another output",
+                                           o.aim.saved_scene, "name another one for --save-scene"});
+    const std::vector<std::string> films = list_films(o.checkpoint, o.output);
+    keep_files(films, o.output), keep_files(films, o.statistics_file), keep_files(films, o.aim.saved_scene);
+    check_writable(o.output);
+    if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
+}
+
 } // namespace
 
 void check_series(const RenderOptions& o) {
@@ -340,13 +380,7 @@ void complete_render_options(RenderOptions& o) {
     if (o.aim.turntable > 0 && is_mesh_file(o.input) && !aim.view && !aim.from) aim.frame_all = true;
     check_mesh_options(o.mesh);
     check_map_options(o.mesh), check_map_words(o.mesh.map);
-    if (o.pixel && (!o.output.empty() || !o.statistics_file.empty() || o.tile || o.samples ||
-                    o.settings.image.crop != Window{} || !o.settings.image.layers.empty() ||
-                    !o.edits.empty() || o.is_denoised || o.checkpoint.is_on()))
-        throw Error(ErrorKind::usage,
-                    {"--pixel explains one pixel and makes no picture", "--pixel",
-                     "leave out -o, --stats, --crop, --tile, --samples, --layers, --denoise, --edits, "
-                     "--checkpoint and --resume"});
+    check_pixel(o);
     check_aim(o);
     if (o.pixel) return;
     if (o.is_denoised) check_denoise(o);
@@ -362,28 +396,8 @@ void complete_render_options(RenderOptions& o) {
     }
     check_frames(o);
     if (o.is_denoised) add_layers(kDenoiserLayers, o.settings.image.layers);
-    refuse_link_loop(o.edits, ErrorKind::bad_input);
-    if (!o.edits.empty() && o.edits != "-" && !std::filesystem::is_regular_file(o.edits))
-        throw Error(ErrorKind::usage,
-                    {std::filesystem::exists(o.edits) ? "not a plain file, which is read twice"
-                                                      : "there is no such file",
-                     "--edits " + o.edits, "-: standard input, which may be a pipe"});
-    // Checked before the scene is read, and again with all of its files.
-    const std::vector<std::string> files = {o.input.string(), o.mesh.displacement_map.string(),
-                                            o.mesh.environment.string(), o.edits};
-    keep_files(files, o.output), keep_files(files, o.statistics_file);
-    if (!o.statistics_file.empty() && find_place(o.output) == find_place(o.statistics_file))
-        throw Error(ErrorKind::usage, {"the picture and its statistics cannot be one file",
-                                       o.statistics_file.string(), "name another one for --stats"});
-    for (const std::filesystem::path& other : {o.output, o.statistics_file})
-        if (!o.aim.saved_scene.empty() && !other.empty() &&
-            find_place(o.aim.saved_scene) == find_place(other))
-            throw Error(ErrorKind::usage, {"the scene would be written over by another output",
-                                           o.aim.saved_scene, "name another one for --save-scene"});
-    const std::vector<std::string> films = list_films(o.checkpoint, o.output);
-    keep_files(films, o.output), keep_files(films, o.statistics_file), keep_files(films, o.aim.saved_scene);
-    check_writable(o.output);
-    if (!o.statistics_file.empty()) check_text_writable(o.statistics_file);
+    check_edits(o);
+    check_outputs(o);
 }
 
 Window make_tile_window(const Window& window, const Tile& tile) {
