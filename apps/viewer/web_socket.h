@@ -6,17 +6,17 @@
 
 namespace relief::viewer {
 
-inline constexpr size_t kMostMessageBytes = 65536; ///< of a message; a longer one ends the connection
+inline constexpr size_t kMostMessageBytes = 65536; ///< a longer message ends the connection
 
 /// The value of Sec-WebSocket-Accept for that of Sec-WebSocket-Key (section 4.2.2).
 std::string make_accept_key(const std::string& key);
 
-/// What the bytes of a browser hold.
+/// A frame holds one message of a browser, or a part of one.
 struct SocketFrame {
     enum class Kind { text, ping, close, other };
     Kind kind = Kind::other;
     std::string content;
-    size_t bytes = 0; ///< that it takes of the buffer
+    size_t bytes = 0; ///< size of the frame in the buffer
     bool is_last = true;
 };
 

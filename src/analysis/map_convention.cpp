@@ -74,14 +74,15 @@ bool is_mirrored_on_plane(const AxisMap& axes) {
     return (axes.axis[first] == 1) != (axes.sign[first] * axes.sign[second] < 0);
 }
 
-/// What the surface does on a plane in the four orders that are turns of one another.
+/// Folds of the surface on a plane, in the four orders of axes that are turns of one another.
 struct HandFolds {
     double share = 0, least_share = 1, area = 0; ///< most of the four, least of the four, most of the four
 };
 
-/// Of two hands this one is right: its surface overhangs clearly more, and has clearly more area. The other
-/// one folds in each of its orders: a sculpt that twists does not fold at all as it was meant, however it
-/// does otherwise. The numbers part 3000 generated maps without a mistake; tests repeat that for a hundred.
+/// True if this hand is the right one of two: its surface overhangs clearly more and has clearly more area,
+/// and the other hand folds in each of its orders. A sculpt that twists does not fold in the order that it
+/// was made in, but does in others. These limits decide 3000 generated maps without a mistake; tests repeat
+/// 100 of them.
 bool is_clearly_right(const HandFolds& hand, const HandFolds& other) {
     constexpr double kLeastShare = 0.03, kShareAhead = 1.3, kAreaAhead = 1.04, kEven = 0.5;
     return hand.share > kLeastShare && hand.share > kShareAhead * other.share &&

@@ -184,7 +184,7 @@ std::vector<Finding> check_map(const Displacement& map, const Scene& scene,
     return findings;
 }
 
-/// Of each displacement.
+/// Lists the meshes that each displacement is on.
 std::vector<std::set<uint32_t>> list_meshes(const Scene& scene) {
     std::vector<std::set<uint32_t>> meshes(scene.displacements.size());
     for (const Object& object : scene.objects)
@@ -192,7 +192,7 @@ std::vector<std::set<uint32_t>> list_meshes(const Scene& scene) {
     return meshes;
 }
 
-/// What readers noted of the pictures of a scene, each once.
+/// Adds the notes of readers about the pictures of a scene, each once.
 void add_reading_notes(const Scene& scene, std::vector<Finding>& findings) {
     std::set<std::string> known;
     const auto add = [&](const std::shared_ptr<const Texture>& texture) {

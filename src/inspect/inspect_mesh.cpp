@@ -33,7 +33,7 @@ void find_faults(const MeshFaults& faults, std::vector<Finding>& findings) {
         add_error(findings, "E-NAN", "uv {} is not finite; unwrap the mesh again", *faults.bad_uv);
 }
 
-/// What a render refuses beside that.
+/// Adds the reason why a render would refuse the mesh, if there is one that find_faults() does not know.
 void find_refusal(const Mesh& mesh, std::vector<Finding>& findings) {
     try {
         validate_mesh(mesh);

@@ -60,7 +60,8 @@ bool has_few_texels(const Surface& surface) {
     return texels < kFewTexels * surface.patch_count();
 }
 
-/// Of surfaces that are not tessellated yet. The same for all views, so that sessions need not follow them.
+/// Looks at surfaces before they are tessellated. The result is the same for all views, so that sessions need
+/// not compute it again.
 Terminators find_terminators(const PreparedScene& scene) {
     const auto has = [&](bool has_displacement) {
         return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {

@@ -237,7 +237,7 @@ void SceneEditor::paint(const MapEdit& edit, size_t named, std::vector<Reading>&
     update_splines(prepared.texture, changed, readings);
 }
 
-/// Of the maps whose coefficients were made of `texels`, and of tiles beside them.
+/// Makes coefficients anew for the maps that have theirs from `texels`, and for the tiles beside them.
 void SceneEditor::update_splines(const std::shared_ptr<const Texture>& texels, const TexelRectangle& changed,
                                  std::vector<Reading>& readings) {
     std::set<const Texture*> done;

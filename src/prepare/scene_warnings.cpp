@@ -47,7 +47,7 @@ void warn_of_degenerate_faces(const Mesh& mesh, std::vector<std::string>& warnin
                     mesh.name, faces.count, mesh.face_sizes.size(), faces.first));
 }
 
-/// Of a mesh that is displaced or subdivided: others are seen as their files have them.
+/// The mesh is displaced or subdivided. Other meshes look as their files have them.
 void warn_of_near_edges(const Mesh& mesh, std::vector<std::string>& warnings) {
     const NearEdges edges = find_near_edges(mesh);
     if (edges.count == 0) return;
@@ -60,7 +60,7 @@ bool has_texture(const Material& material) {
     return has_one;
 }
 
-/// Of a mesh that is displaced, or whose material reads a texture.
+/// The mesh is displaced, or its material reads a texture.
 void warn_of_faces_without_uvs(const Mesh& mesh, std::vector<std::string>& warnings) {
     const FacesWithoutUvs faces = find_faces_without_uvs(mesh);
     if (faces.count == 0) return;
@@ -70,7 +70,7 @@ void warn_of_faces_without_uvs(const Mesh& mesh, std::vector<std::string>& warni
         mesh.name, faces.count, mesh.face_sizes.size(), faces.first));
 }
 
-/// Of a further set that textures of the material lie on.
+/// Textures of the material use this further set.
 void warn_of_faces_without_set(const Mesh& mesh, const UvSet& set, std::vector<std::string>& warnings) {
     const FacesWithoutUvs faces = find_faces_without_uvs(mesh.face_sizes, set.indices);
     if (faces.count == 0) return;

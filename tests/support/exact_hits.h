@@ -16,8 +16,8 @@ class ExactScene {
   public:
     explicit ExactScene(const PreparedScene& scene) : scene_(scene) {}
 
-    /// Of micro-triangles at the levels of the ray's bias, with t above 0. A hit on an edge counts for both
-    /// of its triangles.
+    /// Finds hits with t above 0 on micro-triangles at the levels of the ray's bias. A hit on an edge counts
+    /// for both of its triangles.
     bool hits(const cpu::TraceRay& ray) const {
         return std::ranges::any_of(scene_.instances,
                                    [&](const Instance& instance) { return hits(instance, ray); });

@@ -68,7 +68,7 @@ void load_other_tiles(const Texture& texels, const TileSurroundings& surrounding
         }
 }
 
-/// What coefficients are made of.
+/// A computation of coefficients reads these.
 struct SplineSource {
     const Texture& texels;
     const SplineForm& form;

@@ -27,8 +27,8 @@ struct SplineForm {
     friend auto operator<=>(const SplineForm&, const SplineForm&) = default;
 };
 
-/// Where the texels of an image are in a map with tiles: `map` has the texels of all of them, before they
-/// become coefficients, and their neighbours.
+/// Names the tile of `map` that the texels of an image are in. `map` has the texels of all tiles, before they
+/// become coefficients, and the neighbours of each.
 struct TileSurroundings {
     const DisplacementMap& map;
     TileIndex tile;

@@ -41,7 +41,8 @@ struct TileRanges {
     bool is_outside_read = false; ///< some places are not displaced
 };
 
-/// What read_beyond_tile() and reads inside may read for the places [columns] x [rows] (inclusive), or more.
+/// Lists all texels that read_beyond_tile() and reads inside may read for the places [columns] x [rows]
+/// (inclusive). The list may hold more.
 TileRanges find_tile_ranges(const DisplacementMap& map, TileIndex tile, uint32_t mip,
                             const std::array<int64_t, 2>& columns, const std::array<int64_t, 2>& rows);
 

@@ -1,4 +1,5 @@
-// Where the smooth surface that coarse faces stand for passes the points which cut these faces into quads.
+// Heights of a smooth surface above coarse faces. The faces represent the surface; the heights are those at
+// the points that cut the faces into quads.
 #pragma once
 
 #include <span>

@@ -107,7 +107,8 @@ void store_line(const std::array<Vec3f, Count>& points, size_t line, FourLines<C
 
 } // namespace
 
-/// Of the edges, and of lines through the middle: the map may stretch the inside more than the edges.
+/// Measures the edges and lines through the middle of a patch: the map may stretch the inside more than the
+/// edges.
 LinePoints make_line_points(const Surface& surface, uint32_t patch) {
     const PatchSamples samples(surface, patch, PatchSamples::Filtering::none);
     const LevelLines lines = evaluate_level_lines(surface, patch, samples);

@@ -129,7 +129,7 @@ const uint kUvSetsConstant = 28u;
 // Of kernels that walk the scene trees: nodes that the walk through the tiles of a patch has on its stack at
 // most.
 const uint kTileStackConstant = 29u;
-// Of kernels that read maps: not 0 where tiles of a map continue each other.
+// Kernels that read maps get a number other than 0 if tiles of a map continue each other.
 const uint kTileBordersConstant = 30u;
 
 #include "formulas/end.h"

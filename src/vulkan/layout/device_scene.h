@@ -64,8 +64,9 @@ struct MapData {
     uint first_tile; ///< index into textures; mip levels of the tiles follow consecutively
     uint tile_count;
     uint is_smooth; ///< texels are coefficients of a uniform bicubic B-spline
-    /// Index into override_bits of two words per tile: the tiles to its left and right, and those above and
-    /// below (TileNeighbours), 16 bits each, 0xffff for none; kNone: no tile continues another one.
+    /// Index into override_bits, which has two words per tile: the tiles to its left and right, and those
+    /// above and below (TileNeighbours), 16 bits each, 0xffff for none. The index is kNone if no tile
+    /// continues another one.
     uint first_neighbour;
 };
 
