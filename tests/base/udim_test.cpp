@@ -1,5 +1,4 @@
 // Numbers of UDIM tiles by their uvs, and back.
-#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -19,9 +18,11 @@ TEST(Udim, numbers_columns_before_rows) {
 
 TEST(Udim, has_none_outside_of_ten_columns_and_four_digits) {
     const double huge = std::numeric_limits<double>::infinity();
-    for (const double outside : {-1e-9, -1.0, 10.0, 12.5, 1e18, huge, -huge, std::nan("")})
+    for (const double outside :
+         {-1e-9, -1.0, 10.0, 12.5, 1e18, huge, -huge, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_FALSE(find_udim(outside, 0)) << outside;
-    for (const double outside : {-1e-9, -1.0, 900.0, 1e6, 1e18, huge, -huge, std::nan("")})
+    for (const double outside :
+         {-1e-9, -1.0, 900.0, 1e6, 1e18, huge, -huge, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_FALSE(find_udim(0, outside)) << outside;
     EXPECT_FALSE(find_udim(9, 899)) << "10000";
 }
