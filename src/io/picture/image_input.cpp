@@ -94,8 +94,14 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kOtherSt
 
 /// The picture library would try all its readers on other bytes, some of which believe any size.
 void check_start(std::istream& stream, const std::string& name) {
-    constexpr std::array<std::string_view, 6> kStarts = {"\x76\x2f\x31\x01", "II",       "MM",
-                                                         "\x89PNG",          "\xff\xd8", "#?"};
+    constexpr std::array<std::string_view, 8> kStarts = {"\x76\x2f\x31\x01",
+                                                         std::string_view("II\x2a\0", 4),
+                                                         std::string_view("MM\0\x2a", 4),
+                                                         std::string_view("II\x2b\0", 4),
+                                                         std::string_view("MM\0\x2b", 4),
+                                                         "\x89PNG",
+                                                         "\xff\xd8",
+                                                         "#?"};
     constexpr size_t kLongest = 16;
     std::string start(kLongest, '\0');
     stream.read(start.data(), std::streamsize(start.size()));
@@ -157,7 +163,7 @@ Bytes find_bytes(const std::filesystem::path& file) {
             [name] { return get_picture_library(name).open_file(name); }};
 }
 
-/// Of bytes that outlive the result.
+/// Finds the bytes of a picture in memory, which must outlive the result.
 Bytes find_bytes(std::string_view bytes, const std::string& name) {
     check_extension(name);
     return {name, bytes.size(), [bytes] { return std::make_unique<std::istringstream>(std::string(bytes)); },
@@ -170,7 +176,8 @@ void check_bytes(const Bytes& bytes) {
     check_attributes(*stream, bytes.name, bytes.count);
 }
 
-/// Kinds beside EXR; what they do not open is left to the library of pictures.
+/// Opens kinds beside EXR: the library of pictures gets PNG and JPEG files that the own readers do not know.
+/// It never gets TIFF files: hostile ones end the process in it.
 std::unique_ptr<PixelSource> open_other(const Bytes& bytes, PictureRemarks& remarks) {
     for (const auto& open : {open_hdr, open_tiff, open_jpeg})
         if (std::unique_ptr<PixelSource> source = open(bytes.open(), bytes.name, remarks)) return source;

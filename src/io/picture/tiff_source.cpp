@@ -15,13 +15,14 @@
 
 #include "io/picture/picture_error.h"
 #include "io/picture/row_source.h"
-#include "relief/half.h"
+#include "io/picture/tiff_samples.h"
+#include "relief/error.h"
 
 namespace relief {
 
 namespace {
 
-/// What libtiff says, of one file.
+/// The message that libtiff gave last for one file.
 struct Messages {
     std::string last;
 };
@@ -63,82 +64,13 @@ toff_t measure_stream(thandle_t handle) {
     return toff_t(end);
 }
 
-template <class Value> Value get_tag(TIFF* tiff, uint32_t tag, Value value) {
-    Value found{};
-    return TIFFGetFieldDefaulted(tiff, tag, &found) == 1 ? found : value;
-}
-
-/// How the samples are stored.
-struct Samples {
-    uint16_t bits = 1, format = SAMPLEFORMAT_UINT, per_pixel = 1, photometric = 0,
-             planar = PLANARCONFIG_CONTIG;
-
-    explicit Samples(TIFF* tiff)
-        : bits(get_tag<uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE, 1)),
-          format(get_tag<uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT)),
-          per_pixel(get_tag<uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL, 1)),
-          planar(get_tag<uint16_t>(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG)) {
-        photometric = uint16_t(per_pixel >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
-        TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
-        if (format == SAMPLEFORMAT_VOID) format = SAMPLEFORMAT_UINT;
-        const auto compression = get_tag<uint16_t>(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
-        if (photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG && bits == 8) {
-            TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
-            photometric = PHOTOMETRIC_RGB;
-        }
-    }
-
-    bool is_palette() const { return photometric == PHOTOMETRIC_PALETTE; }
-    bool is_inverted() const { return photometric == PHOTOMETRIC_MINISWHITE; }
-    bool is_float() const { return format == SAMPLEFORMAT_IEEEFP; }
-
-    bool is_known() const {
-        const bool has_color = photometric == PHOTOMETRIC_RGB || photometric == PHOTOMETRIC_MINISBLACK ||
-                               (is_inverted() && !is_float()) || (is_palette() && per_pixel == 1);
-        const bool has_float = is_float() && (bits == 16 || bits == 32);
-        const bool has_integer = format == SAMPLEFORMAT_UINT && (bits == 1 || bits == 2 || bits == 4 ||
-                                                                 bits == 8 || bits == 16 || bits == 32);
-        const bool is_small = bits < 8 && per_pixel > 1;
-        return has_color && (has_float || (has_integer && (!is_palette() || bits <= 8))) && !is_small &&
-               per_pixel > 0;
-    }
-
-    SampleType get_type() const {
-        if (is_float()) return bits == 16 ? SampleType::float16 : SampleType::float32;
-        return bits <= 8 ? SampleType::uint8 : bits == 16 ? SampleType::uint16 : SampleType::uint32;
-    }
-};
-
-/// Sample `k` of a row, integers in [0, 1].
-float load_sample(const uint8_t* row, size_t k, const Samples& samples) {
-    const auto load = [&](auto value) {
-        std::memcpy(&value, row + k * sizeof(value), sizeof(value));
-        return value;
-    };
-    if (samples.is_float()) return samples.bits == 16 ? half_to_float(load(uint16_t())) : load(float());
-    switch (samples.bits) {
-    case 8:
-        return float(row[k]) * (1.0f / 255);
-    case 16:
-        return float(load(uint16_t())) * (1.0f / 65535);
-    case 32:
-        return float(double(load(uint32_t())) / 4294967295.0);
-    default:
-        const size_t per_byte = 8u / samples.bits;
-        const unsigned most = (1u << samples.bits) - 1,
-                       shift = unsigned(samples.bits * (per_byte - 1 - k % per_byte));
-        return float(row[k / per_byte] >> shift & most) / float(most);
-    }
-}
-
 class TiffSource final : public RowSource {
   public:
     TiffSource(std::unique_ptr<std::istream> stream, std::string name, PictureRemarks& remarks)
         : name_(std::move(name)), stream_(std::move(stream)), tiff_(open()), samples_(tiff_.get()) {
-        if (samples_.is_known()) read_header(remarks);
+        refuse_unknown();
+        read_header(remarks);
     }
-
-    bool is_known() const { return samples_.is_known(); }
 
   private:
     struct Close {
@@ -162,26 +94,39 @@ class TiffSource final : public RowSource {
 
     [[noreturn]] void fail() const { fail_damaged(name_, "cannot be read: " + messages_.last); }
 
+    void refuse_unknown() const {
+        const auto compression = get_tiff_tag<uint16_t>(tiff_.get(), TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+        if (TIFFIsCODECConfigured(compression) != 1)
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("has a compression that Relief does not read ({})", compression), name_,
+                         "save it uncompressed, or with LZW or ZIP compression"});
+        if (samples_.colors == TiffColors::unknown)
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("has samples that Relief does not read ({})", samples_.describe()),
+                         name_, "save it as RGB or grey with 8, 16 or 32 bits per sample"});
+    }
+
     void read_header(PictureRemarks& remarks) {
         TIFF* const tiff = tiff_.get();
-        const auto width = get_tag<uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0),
-                   height = get_tag<uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
+        const auto width = get_tiff_tag<uint32_t>(tiff, TIFFTAG_IMAGEWIDTH, 0),
+                   height = get_tiff_tag<uint32_t>(tiff, TIFFTAG_IMAGELENGTH, 0);
         if (width > uint32_t(kMostSide) || height > uint32_t(kMostSide) || width == 0 || height == 0)
             fail_damaged(name_, fmt::format("has no pixels, or too many: {} x {}", width, height));
         header_.width = header_.full_width = int(width), header_.height = header_.full_height = int(height);
         header_.type = samples_.get_type();
-        const size_t channels = samples_.is_palette() ? 3 : samples_.per_pixel;
-        header_.pixel_bytes = std::max<uint64_t>(1, channels * samples_.bits / 8);
+        const size_t channels = samples_.count_channels();
+        header_.pixel_bytes =
+            std::max<uint64_t>(1, std::max<size_t>(channels, samples_.per_pixel) * samples_.bits / 8);
         static const std::vector<std::string> kColors = {"R", "G", "B", "A"}, kGreys = {"Y", "A"};
         const std::vector<std::string>& names = channels < 3 ? kGreys : kColors;
         for (size_t k = 0; k < channels; ++k)
             header_.channels.push_back(k < names.size() ? names[k] : fmt::format("channel{}", k));
-        const int orientation = get_tag<uint16_t>(tiff, TIFFTAG_ORIENTATION, kUpright);
+        const int orientation = get_tiff_tag<uint16_t>(tiff, TIFFTAG_ORIENTATION, kUpright);
         if (orientation == kUpright) find_window(remarks);
         turn(orientation, name_, remarks);
     }
 
-    /// Of a part of a larger picture, whose size is known.
+    /// Finds the place of the picture in a larger one, where the file has both sizes.
     void find_window(PictureRemarks& remarks) {
         uint32_t full_width = 0, full_height = 0;
         float x = 0, y = 0, x_density = 1, y_density = 1;
@@ -190,7 +135,7 @@ class TiffSource final : public RowSource {
             TIFFGetField(tiff, TIFFTAG_PIXAR_IMAGEFULLLENGTH, &full_height) != 1)
             return;
         TIFFGetField(tiff, TIFFTAG_XPOSITION, &x), TIFFGetField(tiff, TIFFTAG_YPOSITION, &y);
-        const auto unit = get_tag<uint16_t>(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
+        const auto unit = get_tiff_tag<uint16_t>(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
         if (unit != RESUNIT_NONE) {
             TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x_density),
                 TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y_density);
@@ -211,68 +156,107 @@ class TiffSource final : public RowSource {
     }
 
     void decode(const VisitRow& visit) override {
-        find_palette();
-        if (TIFFIsTiled(tiff_.get()) != 0)
+        if (samples_.colors == TiffColors::palette) find_palette();
+        if (samples_.colors == TiffColors::converted)
+            decode_colors(visit);
+        else if (TIFFIsTiled(tiff_.get()) != 0)
             decode_tiles(visit);
+        else if (count_planes() > 1)
+            decode_planes(visit);
         else
             decode_lines(visit);
     }
 
     void find_palette() {
-        if (!samples_.is_palette()) return;
         uint16_t *red = nullptr, *green = nullptr, *blue = nullptr;
-        if (TIFFGetField(tiff_.get(), TIFFTAG_COLORMAP, &red, &green, &blue) != 1) fail();
+        if (TIFFGetField(tiff_.get(), TIFFTAG_COLORMAP, &red, &green, &blue) != 1)
+            fail_damaged(name_, "has no palette for its pixels");
+        palette_.clear();
         for (size_t k = 0; k < size_t(1) << samples_.bits; ++k)
             palette_.push_back(
                 {float(red[k] >> 8) / 255, float(green[k] >> 8) / 255, float(blue[k] >> 8) / 255});
     }
 
-    /// Samples of a row, or of one plane of it, into the values of all channels.
+    /// Loads the samples of a row, or of one plane of it, into a row of all samples.
     void store(const uint8_t* row, size_t width, size_t plane, size_t first_x,
-               std::vector<float>& values) const {
-        const size_t channels = header_.channels.size();
-        const bool is_contiguous = samples_.planar == PLANARCONFIG_CONTIG;
-        const size_t count = is_contiguous && !samples_.is_palette() ? channels : 1;
-        for (size_t x = 0; x < width; ++x) {
-            float* const pixel = &values[(first_x + x) * channels];
-            for (size_t c = 0; c < count; ++c) {
-                const float value = load_sample(row, count * x + c, samples_);
-                if (samples_.is_palette()) {
-                    const auto index = size_t(value * float((1u << samples_.bits) - 1) + 0.5f);
-                    std::copy(palette_[index].begin(), palette_[index].end(), pixel);
-                } else {
-                    pixel[is_contiguous ? c : plane] = samples_.is_inverted() && c == 0 ? 1 - value : value;
-                }
-            }
+               std::vector<float>& samples) const {
+        const size_t count = count_row_samples(), step = samples_.per_pixel;
+        for (size_t x = 0; x < width; ++x)
+            for (size_t c = 0; c < count; ++c)
+                samples[(first_x + x) * step + plane + c] = samples_.load(row, count * x + c);
+    }
+
+    void find_color(const float* samples, float* color) const {
+        if (samples_.colors == TiffColors::palette) {
+            const auto& entry = palette_[std::min(size_t(samples[0]), palette_.size() - 1)];
+            std::copy(entry.begin(), entry.end(), color);
+        } else if (samples_.colors == TiffColors::xyz) { // as tif_luv.c of libtiff, for primaries of Rec.709
+            const float x = samples[0], y = samples[1], z = samples[2];
+            color[0] = 2.690f * x - 1.276f * y - 0.414f * z;
+            color[1] = -1.022f * x + 1.978f * y + 0.044f * z;
+            color[2] = 0.061f * x - 0.224f * y + 1.163f * z;
+        } else { // cyan, magenta, yellow and black
+            for (size_t c = 0; c < 3; ++c) color[c] = (1 - samples[c]) * (1 - samples[3]);
         }
     }
 
-    size_t count_rows() const { return size_t(get_height()); }
-    size_t count_planes() const { return samples_.planar == PLANARCONFIG_CONTIG ? 1 : samples_.per_pixel; }
+    /// Makes channels of all samples of a row.
+    void visit_samples(const VisitRow& visit, int y, std::vector<float>& samples) const {
+        const size_t step = samples_.per_pixel, width = size_t(get_width());
+        if (samples_.colors == TiffColors::plain) return visit(y, samples.data());
+        if (samples_.colors == TiffColors::inverted) {
+            for (size_t x = 0; x < width; ++x) samples[x * step] = 1 - samples[x * step];
+            return visit(y, samples.data());
+        }
+        std::vector<float> colors(width * 3);
+        for (size_t x = 0; x < width; ++x) find_color(&samples[x * step], &colors[3 * x]);
+        visit(y, colors.data());
+    }
+
+    /// Samples of a pixel that are stored beside each other.
+    size_t count_row_samples() const { return samples_.is_contiguous() ? samples_.per_pixel : 1; }
+    size_t count_planes() const { return samples_.is_contiguous() ? 1 : samples_.per_pixel; }
+
+    /// Returns room for the bytes of rows of `width` pixels, as libtiff fills it, and checks its size.
+    std::vector<uint8_t> make_row_bytes(uint64_t width, uint64_t row_bytes, uint64_t bytes) const {
+        constexpr uint64_t kMostBytes = uint64_t(1) << 30;
+        constexpr uint64_t kBestCompression = 8192, kSlack = uint64_t(4) << 20; // as of whole pictures
+        const uint64_t file_bytes = measure_stream(stream_.get());
+        if (bytes > std::min(kMostBytes, file_bytes * kBestCompression + kSlack) ||
+            width * count_row_samples() * samples_.bits > row_bytes * 8)
+            fail_damaged(name_,
+                         fmt::format("has rows or tiles of {} bytes for {} pixels each", bytes, width));
+        return std::vector<uint8_t>(size_t(bytes) + 1);
+    }
+    std::vector<uint8_t> make_line_bytes() const {
+        const uint64_t bytes = TIFFScanlineSize64(tiff_.get());
+        return make_row_bytes(uint64_t(get_width()), bytes, bytes);
+    }
 
     void decode_lines(const VisitRow& visit) {
         const auto width = size_t(get_width());
-        std::vector<float> values(width * header_.channels.size());
-        if (count_planes() > 1) return decode_planes(visit);
-        std::vector<uint8_t> row(size_t(TIFFScanlineSize64(tiff_.get())) + 1);
+        std::vector<float> samples(width * samples_.per_pixel);
+        std::vector<uint8_t> row = make_line_bytes();
         for (int y = 0; y < get_height(); ++y) {
             read_line(row.data(), y, 0);
-            store(row.data(), width, 0, 0, values);
-            visit(y, values.data());
+            store(row.data(), width, 0, 0, samples);
+            visit_samples(visit, y, samples);
         }
     }
 
-    /// Planes lie one after another, and a compressed one is read from its beginning: all values first.
+    /// Planes are stored one after another, and a compressed one is read from its beginning: this reads all
+    /// samples first.
     void decode_planes(const VisitRow& visit) {
-        const size_t width = size_t(get_width()), row_values = width * header_.channels.size();
-        std::vector<uint8_t> row(size_t(TIFFScanlineSize64(tiff_.get())) + 1);
-        std::vector<std::vector<float>> rows(count_rows(), std::vector<float>(row_values));
+        const auto width = size_t(get_width());
+        std::vector<uint8_t> row = make_line_bytes();
+        std::vector<std::vector<float>> rows(size_t(get_height()),
+                                             std::vector<float>(width * samples_.per_pixel));
         for (size_t plane = 0; plane < count_planes(); ++plane)
             for (int y = 0; y < get_height(); ++y) {
                 read_line(row.data(), y, plane);
                 store(row.data(), width, plane, 0, rows[size_t(y)]);
             }
-        for (int y = 0; y < get_height(); ++y) visit(y, rows[size_t(y)].data());
+        for (int y = 0; y < get_height(); ++y) visit_samples(visit, y, rows[size_t(y)]);
     }
 
     void read_line(uint8_t* row, int y, size_t plane) {
@@ -282,18 +266,18 @@ class TiffSource final : public RowSource {
     }
 
     void decode_tiles(const VisitRow& visit) {
-        const auto tile_width = get_tag<uint32_t>(tiff_.get(), TIFFTAG_TILEWIDTH, 0),
-                   tile_height = get_tag<uint32_t>(tiff_.get(), TIFFTAG_TILELENGTH, 0);
+        const auto tile_width = get_tiff_tag<uint32_t>(tiff_.get(), TIFFTAG_TILEWIDTH, 0),
+                   tile_height = get_tiff_tag<uint32_t>(tiff_.get(), TIFFTAG_TILELENGTH, 0);
         const auto width = uint32_t(get_width()), height = uint32_t(get_height());
-        constexpr uint64_t kMostTileBytes = uint64_t(1) << 30;
-        if (tile_width == 0 || tile_height == 0 || TIFFTileSize64(tiff_.get()) > kMostTileBytes) fail();
-        const auto row_bytes = size_t(TIFFTileRowSize64(tiff_.get()));
-        std::vector<uint8_t> tile(size_t(TIFFTileSize64(tiff_.get())) + 1);
+        const uint64_t row_bytes = TIFFTileRowSize64(tiff_.get());
+        if (tile_width == 0 || tile_height == 0) fail_damaged(name_, "has tiles without a size");
+        std::vector<uint8_t> tile = make_row_bytes(tile_width, row_bytes, TIFFTileSize64(tiff_.get()));
+        if (row_bytes * tile_height > tile.size()) fail_damaged(name_, "has tiles of two sizes");
         std::vector<std::vector<float>> rows(std::min(tile_height, height),
-                                             std::vector<float>(size_t(width) * header_.channels.size()));
-        for (uint32_t top = 0; top < height; top += tile_height) {
+                                             std::vector<float>(size_t(width) * samples_.per_pixel));
+        for (uint32_t top = 0; top < height; top += std::min(tile_height, height)) {
             const uint32_t row_count = std::min(tile_height, height - top);
-            for (uint32_t left = 0; left < width; left += tile_width)
+            for (uint32_t left = 0; left < width; left += std::min(tile_width, width))
                 for (size_t plane = 0; plane < count_planes(); ++plane) {
                     messages_.last.clear();
                     if (TIFFReadTile(tiff_.get(), tile.data(), left, top, 0, uint16_t(plane)) < 0 ||
@@ -303,12 +287,37 @@ class TiffSource final : public RowSource {
                         store(tile.data() + y * row_bytes, std::min(tile_width, width - left), plane, left,
                               rows[y]);
                 }
-            for (uint32_t y = 0; y < row_count; ++y) visit(int(top + y), rows[y].data());
+            for (uint32_t y = 0; y < row_count; ++y) visit_samples(visit, int(top + y), rows[y]);
         }
     }
 
-    int get_width() const { return int(get_tag<uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0)); }
-    int get_height() const { return int(get_tag<uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0)); }
+    /// Reads the colours that libtiff makes of other samples.
+    void decode_colors(const VisitRow& visit) {
+        const auto width = size_t(get_width()), height = size_t(get_height());
+        std::vector<uint32_t> raster(width * height);
+        std::array<char, 1024> message{};
+        TIFFRGBAImage image;
+        messages_.last.clear();
+        if (TIFFRGBAImageBegin(&image, tiff_.get(), 1, message.data()) != 1)
+            fail_damaged(name_, fmt::format("cannot be read: {}", message.data()));
+        image.req_orientation = image.orientation; // RowSource turns the picture
+        const int is_read = TIFFRGBAImageGet(&image, raster.data(), uint32_t(width), uint32_t(height));
+        TIFFRGBAImageEnd(&image);
+        if (is_read != 1 || !messages_.last.empty()) fail();
+        std::vector<float> colors(width * 3);
+        for (size_t y = 0; y < height; ++y) {
+            for (size_t x = 0; x < width; ++x) {
+                const uint32_t color = raster[y * width + x];
+                colors[3 * x] = float(TIFFGetR(color)) / 255,
+                           colors[3 * x + 1] = float(TIFFGetG(color)) / 255,
+                           colors[3 * x + 2] = float(TIFFGetB(color)) / 255;
+            }
+            visit(int(y), colors.data());
+        }
+    }
+
+    int get_width() const { return int(get_tiff_tag<uint32_t>(tiff_.get(), TIFFTAG_IMAGEWIDTH, 0)); }
+    int get_height() const { return int(get_tiff_tag<uint32_t>(tiff_.get(), TIFFTAG_IMAGELENGTH, 0)); }
 
     static constexpr int kMostSide = 1 << 20; ///< who opens the picture has a lower limit
 
@@ -316,7 +325,7 @@ class TiffSource final : public RowSource {
     std::unique_ptr<std::istream> stream_;
     Messages messages_;
     Handle tiff_;
-    Samples samples_;
+    TiffSamples samples_;
     std::vector<std::array<float, 3>> palette_;
 };
 
@@ -331,11 +340,7 @@ std::unique_ptr<PixelSource> open_tiff(std::unique_ptr<std::istream> stream, con
         !(is_start("II\x2a\0") || is_start("MM\0\x2a") || is_start("II\x2b\0") || is_start("MM\0\x2b")))
         return nullptr;
     stream->seekg(0);
-    PictureRemarks own;
-    auto source = std::make_unique<TiffSource>(std::move(stream), name, own);
-    if (!source->is_known()) return nullptr;
-    remarks.notes.insert(remarks.notes.end(), own.notes.begin(), own.notes.end());
-    return source;
+    return std::make_unique<TiffSource>(std::move(stream), name, remarks);
 }
 
 } // namespace relief

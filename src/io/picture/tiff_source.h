@@ -10,10 +10,12 @@
 
 namespace relief {
 
-/// The first picture of a TIFF stream. Nothing where the stream is no TIFF file, or its samples are another
-/// kind than grey, colours or a palette of 1 to 32 bits, whole numbers without a sign or floats. Palettes
-/// become colours, grey is a channel Y. Its orientation is followed, and its place in a larger picture (the
-/// tags of Pixar). Throws Error{bad_input} for a damaged file.
+/// Opens the first picture of a TIFF stream; returns null for a stream that is no TIFF file. Grey, colours
+/// and palettes are read with 1 to 32 bits (palettes: 16), grey and colours also as floats of 16, 32 or 64
+/// bits and signed integers of 8, 16 or 32. Palettes and CMYK become colours, grey is a channel Y. LogLuv
+/// becomes linear colours, and libtiff makes 8-bit colours of YCbCr and Lab. The picture is turned by its
+/// orientation, and put into its place in a larger picture (the tags of Pixar). Throws Error{bad_input} for a
+/// damaged file, and for other samples.
 std::unique_ptr<PixelSource> open_tiff(std::unique_ptr<std::istream> stream, const std::string& name,
                                        PictureRemarks& remarks);
 
