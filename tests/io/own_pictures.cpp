@@ -6,8 +6,10 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include "io/file_system.h"
 #include "io/picture/exif_orientation.h"
 #include "io/picture/hdr_source.h"
+#include "io/picture/image_input.h"
 #include "io/picture/jpeg_source.h"
 #include "io/picture/picture_library.h"
 #include "io/picture/tiff_source.h"
@@ -157,6 +159,33 @@ TEST_F(OwnPictures, jpeg_is_read_as_by_the_module) {
                                                   spec.attribute("jpeg:subsampling", "4:2:0");
                                               }));
     }
+}
+
+TEST_F(OwnPictures, jpeg_that_is_damaged_is_warned_of) {
+    std::string bytes = read_file_bytes(write_picture("a.jpg", 3, OIIO::TypeDesc::UINT8, {}, 90, 90));
+    EXPECT_TRUE(parse_texture(bytes, "a.jpg").warnings.empty());
+    for (size_t k = bytes.size() / 2; k < bytes.size() / 2 + 60; ++k)
+        if (bytes[k] != '\xff' && bytes[k - 1] != '\xff') bytes[k] = char(0x55 + k % 3); // no marker
+    const std::filesystem::path file = write("b.jpg", bytes);
+    for (const Texture& texture : {read_texture(file), parse_texture(bytes, file.string())}) {
+        ASSERT_EQ(texture.warnings.size(), 1u);
+        EXPECT_HAS(texture.warnings[0], "b.jpg: is damaged, and parts of the picture may be wrong");
+        EXPECT_HAS(texture.warnings[0], "Corrupt JPEG data");
+    }
+}
+
+TEST_F(OwnPictures, jpeg_of_too_many_scans_is_refused) {
+    const std::string bytes =
+        read_file_bytes(write_picture("a.jpg", 1, OIIO::TypeDesc::UINT8,
+                                      [](OIIO::ImageSpec& spec) { spec.attribute("jpeg:progressive", 1); }));
+    const size_t last = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
+    const auto repeat = [&](int count) {
+        std::string all = bytes.substr(0, end);
+        for (int k = 0; k < count; ++k) all += bytes.substr(last, end - last);
+        return write("b.jpg", all + bytes.substr(end));
+    };
+    EXPECT_EQ(read_texture(repeat(100)).width, uint32_t(kColumns));
+    EXPECT_HAS(message_of([&] { read_texture(repeat(600)); }), "more than 500 scans");
 }
 
 TEST_F(OwnPictures, are_turned_as_their_orientation_says) {

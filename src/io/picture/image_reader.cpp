@@ -1,6 +1,8 @@
 // read_texture and read_image: pixels as stored.
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <utility>
@@ -91,7 +93,9 @@ Texture read_texture(const std::filesystem::path& file) {
     return with_memory_error(file.string(), [&] {
         const PictureName name = split_picture_name(file.string());
         PictureRemarks remarks;
-        Texture texture = read_pixels(*open_texture(name, remarks), file.string());
+        const std::unique_ptr<PixelSource> source = open_texture(name, remarks);
+        Texture texture = read_pixels(*source, file.string());
+        std::ranges::move(source->list_warnings(), std::back_inserter(remarks.warnings));
         add_remarks(std::move(remarks), texture);
         std::ifstream stream(name.file, std::ios::binary);
         texture.colour_tag = find_color_tag(stream);
@@ -102,7 +106,9 @@ Texture read_texture(const std::filesystem::path& file) {
 Texture parse_texture(std::string_view bytes, const std::string& name) {
     return with_memory_error(name, [&] {
         PictureRemarks remarks;
-        Texture texture = read_pixels(*open_texture_bytes(bytes, name, remarks), name);
+        const std::unique_ptr<PixelSource> source = open_texture_bytes(bytes, name, remarks);
+        Texture texture = read_pixels(*source, name);
+        std::ranges::move(source->list_warnings(), std::back_inserter(remarks.warnings));
         add_remarks(std::move(remarks), texture);
         std::istringstream stream{std::string(bytes)};
         texture.colour_tag = find_color_tag(stream);

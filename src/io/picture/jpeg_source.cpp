@@ -13,21 +13,28 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <fmt/format.h>
+
+#include "io/count_things.h"
 #include "io/picture/exif_orientation.h"
 #include "io/picture/jpeg_end.h"
 #include "io/picture/picture_error.h"
+#include "io/picture/picture_text.h"
 #include "io/picture/row_source.h"
 
 namespace relief {
 
 namespace {
 
-/// libjpeg's own, and where it jumps to.
+/// Holds libjpeg's error manager, the place that it jumps to, and its messages.
 struct Errors {
     jpeg_error_mgr manager; ///< first, so that a pointer to it is one to this
     std::jmp_buf place;
-    std::array<char, JMSG_LENGTH_MAX> message{};
+    std::array<char, JMSG_LENGTH_MAX> message{}, first_warning{};
+    int warning_count = 0;
 };
+
+constexpr int kMostScans = 500; ///< a small file of many scans takes hours (libjpeg-turbo, README)
 
 [[noreturn]] void on_error(j_common_ptr info) {
     auto& errors = *reinterpret_cast<Errors*>(info->err);
@@ -35,7 +42,20 @@ struct Errors {
     std::longjmp(errors.place, 1);
 }
 
-void on_message(j_common_ptr, int) {}
+void on_message(j_common_ptr info, int level) {
+    if (level >= 0) return; // a trace
+    auto& errors = *reinterpret_cast<Errors*>(info->err);
+    if (errors.warning_count++ == 0) info->err->format_message(info, errors.first_warning.data());
+}
+
+/// libjpeg calls this several times per scan.
+void check_scans(j_common_ptr info) {
+    if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMostScans) return;
+    auto& errors = *reinterpret_cast<Errors*>(info->err);
+    std::snprintf(errors.message.data(), errors.message.size(), "it has more than %d scans", kMostScans);
+    info->err->msg_code = 0;
+    std::longjmp(errors.place, 1);
+}
 
 class JpegSource final : public RowSource {
   public:
@@ -47,6 +67,8 @@ class JpegSource final : public RowSource {
         try {
             run([&] {
                 jpeg_create_decompress(&info_);
+                progress_.progress_monitor = check_scans;
+                info_.progress = &progress_;
                 jpeg_save_markers(&info_, JPEG_APP0 + 1, 0xffff);
                 read_header();
             });
@@ -61,6 +83,14 @@ class JpegSource final : public RowSource {
     JpegSource& operator=(const JpegSource&) = delete;
 
     bool is_known() const { return is_known_; }
+
+    std::vector<std::string> list_warnings() const override {
+        if (errors_.warning_count == 0) return {};
+        return {fmt::format("{}: is damaged, and parts of the picture may be wrong: libjpeg reports {}, "
+                            "the first is '{}': export or copy it again",
+                            name_, count_things(size_t(errors_.warning_count), "fault"),
+                            make_printable(errors_.first_warning.data()))};
+    }
 
   private:
     /// `call` uses libjpeg and makes no object with a destructor: a jump would pass it by.
@@ -97,6 +127,7 @@ class JpegSource final : public RowSource {
     void decode(const VisitRow& visit) override {
         if (is_read_) run([&] { jpeg_abort_decompress(&info_), read_header(); });
         is_read_ = true;
+        errors_.warning_count = 0; // those of the header change no pixel
         run([&] {
             info_.out_color_space = space_;
             jpeg_start_decompress(&info_);
@@ -118,6 +149,7 @@ class JpegSource final : public RowSource {
     std::vector<uint8_t> bytes_;
     Errors errors_{};
     jpeg_decompress_struct info_{};
+    jpeg_progress_mgr progress_{};
     J_COLOR_SPACE space_ = JCS_RGB;
     bool is_known_ = false, is_read_ = false;
 };

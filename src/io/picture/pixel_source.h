@@ -32,6 +32,8 @@ class PixelSource {
     virtual void read_floats(int channel_count, size_t stride, float* values) = 0;
     /// The same as bits of binary16, for pictures of that type.
     virtual void read_halves(int channel_count, size_t stride, uint16_t* values) = 0;
+    /// Lists what the last reading noticed, in words for the user.
+    virtual std::vector<std::string> list_warnings() const { return {}; }
 };
 
 } // namespace relief
