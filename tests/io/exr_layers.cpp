@@ -233,6 +233,35 @@ TEST_F(ExrLayers, of_scene_files_are_named_by_keys) {
     EXPECT_HAS(message_of([&] { load(R"(, "layer": "vmd")"); }), "has no layer 'vmd'");
 }
 
+TEST_F(ExrLayers, with_colons_in_their_names_are_chosen) {
+    const auto make = [](const std::string& layer, float value) {
+        return Channels{{layer + ".R", value}, {layer + ".G", value + 1}, {layer + ".B", value + 2}};
+    };
+    Channels both = make("A", 1);
+    for (const auto& channel : make("a:vdm", 4)) both.push_back(channel);
+    const std::string one = write_exr("one.exr", both).string();
+    EXPECT_EQ(read_first(one + ":a:vdm"), (std::vector<float>{4, 5, 6}));
+    EXPECT_EQ(read_first(one + "::a:vdm"), (std::vector<float>{4, 5, 6}));
+    EXPECT_EQ(read_first(one + ":a:vdm.G"), (std::vector<float>{5}));
+    EXPECT_HAS(read_texture(one).warnings.at(0), "one.exr::a:vdm,");
+    EXPECT_HAS(message_of([&] { read_texture(one + ":c:vdm"); }), "has no part 'c'");
+    const std::string two =
+        write_parts("two.exr", {{"a", make("a:vdm", 1)}, {"a:b", make("vdm", 4)}}).string();
+    EXPECT_EQ(read_first(two + "::a:vdm"), (std::vector<float>{1, 2, 3}));
+    EXPECT_EQ(read_first(two + ":a:a:vdm"), (std::vector<float>{1, 2, 3}));
+    EXPECT_EQ(read_first(two + ":a:b:vdm"), (std::vector<float>{4, 5, 6}));
+    EXPECT_EQ(read_first(two + ":a:b:"), (std::vector<float>{4, 5, 6}));
+    EXPECT_EQ(split_picture_name(join_picture_name({two, "", "a:vdm"})).layer, "a:vdm");
+    write("plane.obj", kQuadObj);
+    for (const std::string keys : {R"("layer": "a:vdm")", R"("part": "a", "layer": "a:vdm")"}) {
+        const Scene scene = load_scene(write(
+            "scene.json", R"({"meshes": {"plane": {"file": "plane.obj"}}, "objects": [{"mesh": "plane"}],
+                "environment": {"file": "two.exr", )" +
+                              keys + "}}"));
+        EXPECT_EQ(first(*scene.environment->texture), (std::vector<float>{1, 2, 3})) << keys;
+    }
+}
+
 TEST_F(ExrLayers, of_tiles_are_those_of_each_tile) {
     for (const int udim : {1001, 1002})
         write_exr("t." + std::to_string(udim) + ".exr",

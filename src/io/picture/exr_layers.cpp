@@ -119,19 +119,15 @@ class Chooser {
         : parts_(parts), choice_(choice) {}
 
     Chosen run() const {
-        if (!choice_.part.empty()) {
-            const std::optional<size_t> part = find_part(choice_.part);
-            if (!part) refuse("part", choice_.part);
-            if (choice_.layer.empty()) return take(*part, find_usual_layer(parts_[*part]));
-            if (const auto found = find_layer(*part)) return *found;
+        if (choice_.part.empty() && choice_.layer.empty()) return choose_usual();
+        if (choice_.part.empty()) {
+            if (const auto found = find_anywhere(choice_.layer)) return *found;
             refuse("layer", choice_.layer);
         }
-        if (choice_.layer.empty()) return choose_usual();
-        for (size_t part = 0; part < parts_.size(); ++part)
-            if (const auto found = find_layer(part)) return *found;
-        if (const auto part = find_part(choice_.layer); part && !parts_[*part].layers.empty())
-            return take(*part, find_usual_layer(parts_[*part]));
-        refuse("layer", choice_.layer);
+        if (const auto found = find_in_part(choice_.part, choice_.layer)) return *found;
+        if (const auto found = find_with_colons()) return *found;
+        if (find_part(choice_.part)) refuse("layer", choice_.layer);
+        refuse("part", choice_.part);
     }
 
     /// Lists all layers and channels that `chosen` leaves out, except alpha.
@@ -191,15 +187,43 @@ class Chooser {
         return std::nullopt;
     }
 
-    /// By the name of a layer, or by the whole name of a channel, which is read alone.
-    std::optional<Chosen> find_layer(size_t part) const {
+    /// Finds a layer by its name, or a channel by its whole name, which is read alone.
+    std::optional<Chosen> find_layer(size_t part, const std::string& name) const {
         for (const Layer& layer : parts_[part].layers)
-            if (!layer.name.empty() && layer.name == choice_.layer) return take(part, layer);
+            if (!layer.name.empty() && layer.name == name) return take(part, layer);
         for (const Layer& layer : parts_[part].layers)
             for (const std::string& channel : layer.channels)
-                if (get_full_name(layer.name, channel) == choice_.layer)
-                    return Chosen{part, layer.name, {channel}};
+                if (get_full_name(layer.name, channel) == name) return Chosen{part, layer.name, {channel}};
         return std::nullopt;
+    }
+
+    std::optional<Chosen> take_usual(size_t part) const {
+        if (parts_[part].layers.empty()) return std::nullopt;
+        return take(part, find_usual_layer(parts_[part]));
+    }
+
+    std::optional<Chosen> find_in_part(const std::string& part_name, const std::string& layer) const {
+        const std::optional<size_t> part = find_part(part_name);
+        if (!part) return std::nullopt;
+        return layer.empty() ? take_usual(*part) : find_layer(*part, layer);
+    }
+
+    /// Finds a layer of any part, or a part.
+    std::optional<Chosen> find_anywhere(const std::string& name) const {
+        for (size_t part = 0; part < parts_.size(); ++part)
+            if (const auto found = find_layer(part, name)) return found;
+        const std::optional<size_t> part = find_part(name);
+        return part ? take_usual(*part) : std::nullopt;
+    }
+
+    /// Tries the colons behind the first one, which may belong to a name, as the end of the part.
+    std::optional<Chosen> find_with_colons() const {
+        const std::string whole = choice_.part + ":" + choice_.layer;
+        for (size_t colon = whole.find(':', choice_.part.size() + 1); colon != std::string::npos;
+             colon = whole.find(':', colon + 1))
+            if (const auto found = find_in_part(whole.substr(0, colon), whole.substr(colon + 1)))
+                return found;
+        return find_anywhere(whole);
     }
 
     Chosen choose_usual() const {

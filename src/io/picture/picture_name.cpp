@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kExrEnd = ".exr:";
 
-/// Where the colon stands behind the name of an EXR file; npos: nowhere.
+/// Returns the place of the colon behind the name of an EXR file, or npos where there is none.
 size_t find_colon(const std::string& name) {
     const auto found =
         std::search(name.begin(), name.end(), kExrEnd.begin(), kExrEnd.end(),
@@ -33,7 +33,8 @@ PictureName split_picture_name(const std::string& name) {
 }
 
 std::string join_picture_name(const PictureName& name) {
-    if (name.part.empty()) return name.layer.empty() ? name.file : name.file + ":" + name.layer;
+    if (name.part.empty() && name.layer.find(':') == std::string::npos)
+        return name.layer.empty() ? name.file : name.file + ":" + name.layer;
     return name.file + ":" + name.part + ":" + name.layer;
 }
 
