@@ -78,9 +78,10 @@ TEST_F(GltfExtensions, parts_of_the_file_with_unknown_ones_are_warned_of) {
     std::vector<std::string> warnings;
     EXPECT_EQ(parse_with_warnings(document, warnings).face_sizes.size(), 2u);
     ASSERT_EQ(warnings.size(), 3u);
-    EXPECT_HAS(warnings[0], "KHR_animation_pointer");
+    EXPECT_HAS(warnings[0],
+               "does not read KHR_animation_pointer, so the properties that it animates keep their");
     EXPECT_HAS(warnings[1], "ACME_bend of 1 parts");
-    EXPECT_HAS(warnings[1], "the first is nodes[0]");
+    EXPECT_HAS(warnings[1], "so their shape may differ; the first is nodes[0]");
     EXPECT_HAS(warnings[2], "ACME_grow of 1 parts");
 }
 
@@ -160,6 +161,26 @@ TEST_F(GltfExtensions, textures_of_other_transforms_leave_the_uvs_with_a_warning
                             warnings);
     EXPECT_TRUE(warnings.empty()) << "the other one is of another set";
     EXPECT_EQ(apart.uvs[apart.uv_indices[2]], (Vec2f{2, -1}));
+}
+
+TEST_F(GltfExtensions, materials_of_different_transforms_are_counted) {
+    const GltfJson mixed = {{"normalTexture", make_texture({{"scale", {2, 2}}})},
+                            {"emissiveTexture", make_texture({{"scale", {3, 3}}})}};
+    GltfDocument document = make_textured_square(mixed);
+    auto& primitives = document.json["meshes"][0]["primitives"];
+    document.json["materials"] = GltfJson::array();
+    for (int k = 0; k < 3; ++k) document.json["materials"].push_back(mixed);
+    const GltfJson part = primitives[0];
+    primitives = GltfJson::array();
+    for (const int material : {1, 2, 1, 2, 2}) {
+        primitives.push_back(part);
+        primitives.back()["material"] = material;
+    }
+    std::vector<std::string> warnings;
+    parse_with_warnings(document, warnings);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS(warnings[0], "textures of 2 materials have different KHR_texture_transform");
+    EXPECT_HAS(warnings[0], "the uvs of set 0; the first is materials[1]: export");
 }
 
 TEST_F(GltfExtensions, quantized_uvs_become_parts_of_one_by_the_transform) {

@@ -46,7 +46,8 @@ TEST_F(MendedMeshes, obj_without_the_normals_or_uvs_that_it_names) {
     expect_warning("a.obj: 4 corners have normal indices that are out of range");
     expect_warning("the first is '1' in line 5");
     EXPECT_TRUE(load("a.obj", std::string(kPoints) + "f 1/1 2/2 3/3 4/4\n").uv_indices.empty());
-    expect_warning("4 corners have uv indices that are out of range");
+    expect_warning(
+        "4 corners have uv indices that are out of range: their faces have no uvs, export the mesh again");
     load("a.obj", std::string(kPoints) + "f 1//-1 2//-1 3//-1 4//-9999999999999999999999\n");
     expect_warning("normal indices that are out of range");
     EXPECT_TRUE(load("a.obj", std::string(kPoints) + "vn 0 0 1\nf 1//0 2//0 3//0 4//0\n").normals.empty());
@@ -82,10 +83,12 @@ std::string make_ply(const std::string& normal) {
            "4 0 1 2 3\n4 1 0 5 4\n";
 }
 
-TEST_F(MendedMeshes, normals_that_are_none_are_made_anew) {
+TEST_F(MendedMeshes, normals_that_are_none_are_computed) {
     for (const std::string bad : {" nan 0 1\n", " 0 0 0\n", " inf 0 0\n"}) {
         const Mesh mesh = load("n.ply", make_ply(bad));
-        expect_warning("n.ply: 4 of 8 corners have normals that are not finite or have no length");
+        expect_warning(
+            "n.ply: 4 of 8 corners have normals that are not finite or have no length: Relief computes "
+            "them from the faces");
         ASSERT_EQ(mesh.normal_indices.size(), 8u);
         const Vec3f mended = mesh.normals[mesh.normal_indices[0]];
         EXPECT_NEAR(mended.y, std::sqrt(0.5f), 1e-6f) << bad;
@@ -138,7 +141,9 @@ TEST_F(MendedMeshes, attributes_of_gltf_that_cannot_be_read_are_left_out) {
         };
     };
     EXPECT_TRUE(read("NORMAL", without_buffer("VEC3")).normals.empty());
-    expect_warning("accessors[2]: has no 'bufferView', and is left out");
+    expect_warning(
+        "a.glb: NORMAL of 1 part cannot be read and is left out; the first is meshes[0].primitives[0] "
+        "(accessors[2]: has no 'bufferView'): export it again");
     EXPECT_TRUE(read("TEXCOORD_0", without_buffer("VEC2")).uvs.empty());
     expect_warning("accessors[2]: has no 'bufferView'");
     read("TANGENT", without_buffer("VEC4"));
@@ -153,6 +158,23 @@ TEST_F(MendedMeshes, attributes_of_gltf_that_cannot_be_read_are_left_out) {
     EXPECT_TRUE(read("NORMAL", [&](GltfDocument& d) { return d.add_floats("VEC3", bad); }).normals.empty());
     expect_warning("6 of 6 corners have normals");
     EXPECT_HAS(message_of([&] { read("POSITION", without_buffer("VEC3")); }), "has no 'bufferView'");
+}
+
+TEST_F(MendedMeshes, attributes_of_gltf_that_cannot_be_read_are_counted) {
+    GltfDocument document = make_gltf_square();
+    const GltfJson part = primitive_of(document);
+    auto& primitives = document.json["meshes"][0]["primitives"];
+    for (int k = 0; k < 20; ++k) {
+        primitives.push_back(part);
+        primitives.back()["attributes"]["NORMAL"] = 99 + k;
+        if (k > 4) primitives.back()["attributes"]["TANGENT"] = 99;
+    }
+    load("a.glb", document.make_glb());
+    ASSERT_EQ(warnings_.size(), 2u);
+    EXPECT_HAS(warnings_[0], "NORMAL of 20 parts cannot be read and is left out; the first is "
+                             "meshes[0].primitives[1] (");
+    EXPECT_HAS(warnings_[0], "there is no accessor 99");
+    EXPECT_HAS(warnings_[1], "TANGENT of 15 parts");
 }
 
 TEST_F(MendedMeshes, what_a_render_refuses_is_an_error_of_inspect) {

@@ -116,7 +116,7 @@ TEST_F(GltfFiles, nodes_may_be_nested_deeply) {
               (Vec3f{1, 2, 3}));
     EXPECT_EQ(parse_text(make_chain(10, "", "")).face_sizes.size(), 1u);
     EXPECT_HAS(message_of([&] { parse_text(make_chain(10, R"(,"children":[0])", scenes)); }),
-               "nodes[0]: stands twice in the tree of nodes");
+               "nodes[0]: is listed twice in the tree of nodes");
     EXPECT_HAS(message_of([&] { parse_text(make_chain(10, R"(,"children":[0])", "")); }),
                "nodes[0]: is a descendant of itself");
 }
@@ -126,7 +126,7 @@ TEST_F(GltfFiles, nodes_that_are_no_tree_are_refused) {
     document.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"children", {1}}}};
     EXPECT_HAS(message_of([&] { parse(document); }), "nodes[1]: is a descendant of itself");
     document.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}};
-    EXPECT_HAS(message_of([&] { parse(document); }), "nodes[2]: stands twice in the tree of nodes");
+    EXPECT_HAS(message_of([&] { parse(document); }), "nodes[2]: is listed twice in the tree of nodes");
 }
 
 TEST_F(GltfFiles, the_uv_set_is_chosen_and_v_grows_upwards) {
@@ -237,7 +237,7 @@ TEST_F(GltfFiles, damaged_documents_name_their_place) {
     EXPECT_HAS(set("/meshes/0/primitives/0/attributes", GltfJson::object()), "key 'POSITION' is missing");
     EXPECT_HAS(set("/meshes/0/primitives/0/indices", 0), "is of type VEC3, not SCALAR");
     EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"children":[1]},{"children":[1]}])")),
-               "nodes[1]: stands twice");
+               "nodes[1]: is listed twice");
     EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":3}])")), "nodes[0].mesh: there is no mesh 3");
     EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":0,"rotation":[0,0,0,0]}])")), "has no length");
     EXPECT_HAS(set("/nodes", GltfJson::parse(R"([{"mesh":0,"matrix":[1,2]}])")), "must be 16 numbers, not 2");

@@ -91,8 +91,8 @@ class ExtensionCounter {
         std::vector<std::string> warnings;
         for (const auto& [name, count] : counts_)
             warnings.push_back(
-                fmt::format("{}: the extension {} of {} parts of the file is not read, and their "
-                            "shape may be another; the first is {}; export without it",
+                fmt::format("{}: the extension {} of {} parts of the file is not read, so their "
+                            "shape may differ; the first is {}; export without it",
                             file, name, count.owners, count.first));
         return warnings;
     }
@@ -125,8 +125,10 @@ void check_gltf_extensions(const GltfFile& file, std::vector<std::string>& warni
     }
     for (const JsonNode& name : file.list("extensionsUsed"))
         if (name.as_string() == "KHR_animation_pointer")
-            warnings.push_back(
-                fmt::format("{}: what KHR_animation_pointer moves stays at rest", file.name()));
+            warnings.push_back(fmt::format(
+                "{}: Relief does not read KHR_animation_pointer, so the properties that it animates "
+                "keep their values: export animations of nodes and weights",
+                file.name()));
     for (std::string& warning : counter.list_warnings(file.name())) warnings.push_back(std::move(warning));
 }
 

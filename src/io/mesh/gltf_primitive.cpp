@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "io/count_things.h"
 #include "io/mesh/gltf_compression.h"
 #include "relief/error.h"
 
@@ -72,7 +73,8 @@ class DracoPart {
         return mesh_->list_corners();
     }
 
-    /// Of an attribute; nothing where it is not among the compressed ones. `accessor`: says how it is meant.
+    /// Returns the values of an attribute, or nothing where it is not among the compressed ones. `accessor`
+    /// gives the meaning of its integers.
     std::optional<std::span<const float>> read(const std::string& key, size_t width,
                                                const JsonNode& accessor) const {
         if (!mesh_) return std::nullopt;
@@ -89,14 +91,15 @@ class DracoPart {
     std::optional<DracoMesh> mesh_;
 };
 
-/// What is not needed: nothing, and a warning, where `read` throws that it cannot be read.
+/// Returns nothing, and adds to the losses, where `read` throws that an attribute cannot be read.
 template <class Read>
-std::span<const float> read_if_possible(const Read& read, std::vector<std::string>& warnings) {
+std::span<const float> read_if_possible(const Read& read, const std::string& attribute,
+                                        const JsonNode& primitive, GltfLosses& losses) {
     try {
         return read();
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::bad_input) throw;
-        warnings.push_back(fmt::format("{}: {}, and is left out", error.where(), error.message()));
+        losses.add(attribute, primitive, error);
         return {};
     }
 }
@@ -141,8 +144,27 @@ void add_target(std::vector<float>& values, size_t width, std::span<const float>
 
 } // namespace
 
-void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part,
-                       std::vector<std::string>& warnings) {
+void GltfLosses::add(const std::string& attribute, const JsonNode& primitive, const Error& error) {
+    const std::string part = primitive.path();
+    Loss& loss = losses_[attribute];
+    if (loss.parts > 0 && loss.last == part) return; // another morph target
+    if (loss.parts++ == 0) loss.first = part, loss.where = error.where(), loss.message = error.message();
+    loss.last = part;
+}
+
+std::vector<std::string> GltfLosses::list_warnings(const std::string& file) const {
+    std::vector<std::string> warnings;
+    for (const auto& [attribute, loss] : losses_) {
+        const bool names_file = loss.where.starts_with(file + ": ");
+        warnings.push_back(fmt::format(
+            "{}: {} of {} cannot be read and is left out; the first is {} ({}: {}): export it again", file,
+            attribute, count_things(loss.parts, "part"), loss.first,
+            names_file ? loss.where.substr(file.size() + 2) : loss.where, loss.message));
+    }
+    return warnings;
+}
+
+void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part, GltfLosses& losses) {
     const auto targets = primitive.find("targets");
     if (!targets) return;
     for (const JsonNode& target : targets->elements()) {
@@ -157,7 +179,8 @@ void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive&
             return values;
         };
         const auto try_to_read = [&](const char* key, std::span<const float> base) {
-            return read_if_possible([&] { return read(key, base); }, warnings);
+            return read_if_possible([&] { return read(key, base); }, fmt::format("{} of morph targets", key),
+                                    primitive, losses);
         };
         part.targets.push_back({read("POSITION", part.positions), try_to_read("NORMAL", part.normals),
                                 try_to_read("TANGENT", part.tangents)});
@@ -181,7 +204,7 @@ MorphedPrimitive::MorphedPrimitive(const GltfPrimitive& part, const std::vector<
 }
 
 GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set,
-                                  std::span<const int> further_sets, std::vector<std::string>& warnings) {
+                                  std::span<const int> further_sets, GltfLosses& losses) {
     GltfPrimitive part;
     const auto mode_node = primitive.find("mode");
     const int64_t mode = mode_node ? mode_node->as_integer(0, kFan) : kTriangles;
@@ -207,7 +230,7 @@ GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int
                         kDamagedHint);
                 return values;
             },
-            warnings);
+            key, primitive, losses);
     };
     part.normals = read("NORMAL", 3);
     part.tangents = read("TANGENT", 4);

@@ -1,12 +1,15 @@
 // One part of a glTF mesh: its vertices, and its faces as polygons.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/mesh/gltf_file.h"
+#include "relief/error.h"
 
 namespace relief {
 
@@ -27,14 +30,29 @@ struct GltfPrimitive {
     size_t uv_set_count = 0; ///< TEXCOORD_0 and so on that the part has
 };
 
+/// Counts the parts that are read without an attribute that is damaged.
+class GltfLosses {
+  public:
+    void add(const std::string& attribute, const JsonNode& primitive, const Error& error);
+    /// One warning per attribute, with its first part.
+    std::vector<std::string> list_warnings(const std::string& file) const;
+
+  private:
+    struct Loss {
+        size_t parts = 0;
+        std::string first, last;    ///< parts
+        std::string where, message; ///< of the first
+    };
+    std::map<std::string, Loss> losses_; ///< by attribute
+};
+
 /// Points and lines have no faces; targets are left out. `further_sets`: numbers of uv sets. Normals,
-/// tangents and uvs that cannot be read are left out, and added to `warnings`. Throws bad_input.
+/// tangents and uvs that cannot be read are left out, and added to `losses`. Throws bad_input.
 GltfPrimitive read_gltf_primitive(GltfFile& file, const JsonNode& primitive, int uv_set,
-                                  std::span<const int> further_sets, std::vector<std::string>& warnings);
+                                  std::span<const int> further_sets, GltfLosses& losses);
 
 /// Adds the morph targets to a part; normals and tangents of targets as above. Throws bad_input.
-void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part,
-                       std::vector<std::string>& warnings);
+void read_gltf_targets(GltfFile& file, const JsonNode& primitive, GltfPrimitive& part, GltfLosses& losses);
 
 /// A part with its morph targets added, by a weight each; what the weights leave out adds nothing.
 class MorphedPrimitive {

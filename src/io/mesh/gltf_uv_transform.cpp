@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "io/count_things.h"
+
 namespace relief {
 
 namespace {
@@ -40,12 +42,17 @@ UvTransform read_uv_transform(const JsonNode& node) {
 
 } // namespace
 
-std::optional<UvTransform> find_uv_transform(const GltfFile& file, const JsonNode& primitive, int uv_set,
-                                             std::vector<std::string>& warnings) {
+std::optional<UvTransform> GltfUvTransforms::find(const JsonNode& primitive, int uv_set) {
     const auto index = primitive.find("material");
     if (!index) return std::nullopt;
-    const std::vector<JsonNode> materials = file.list("materials");
-    const JsonNode& material = GltfFile::resolve(*index, materials, "material");
+    if (!materials_) materials_ = file_.list("materials");
+    const JsonNode& material = GltfFile::resolve(*index, *materials_, "material");
+    const auto [found, is_new] = found_.try_emplace({&material, uv_set});
+    if (is_new) found->second = find_common(material, uv_set);
+    return found->second;
+}
+
+std::optional<UvTransform> GltfUvTransforms::find_common(const JsonNode& material, int uv_set) {
     std::optional<UvTransform> common;
     bool is_common = true;
     visit_textures(material, [&](const JsonNode& texture) {
@@ -59,13 +66,23 @@ std::optional<UvTransform> find_uv_transform(const GltfFile& file, const JsonNod
         common = transform;
     });
     if (!is_common) {
-        warnings.push_back(fmt::format("{}: textures of {} have different KHR_texture_transform, and none is "
-                                       "applied to the uvs of set {}: export with one for all of them",
-                                       file.name(), material.path(), uv_set));
+        const auto [mixed, is_first] = mixed_.try_emplace(uv_set, Mixed{0, material.path()});
+        ++mixed->second.materials;
         return std::nullopt;
     }
     if (!common || *common == kIdentity) return std::nullopt;
     return common;
+}
+
+std::vector<std::string> GltfUvTransforms::list_warnings() const {
+    std::vector<std::string> warnings;
+    for (const auto& [set, mixed] : mixed_)
+        warnings.push_back(
+            fmt::format("{}: textures of {} have different KHR_texture_transform, and none is "
+                        "applied to the uvs of set {}; the first is {}: export with one for all "
+                        "textures of a material",
+                        file_.name(), count_things(mixed.materials, "material"), set, mixed.first));
+    return warnings;
 }
 
 std::vector<float> transform_uvs(std::span<const float> uvs, const UvTransform& transform) {

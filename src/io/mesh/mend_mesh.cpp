@@ -150,7 +150,7 @@ void mend_mesh(Mesh& mesh, const std::string& name, std::vector<std::string>& wa
     if (const size_t count = NormalMender(mesh).mend(); count > 0)
         warnings.push_back(
             fmt::format("{}: {} of {} corners have normals that are not finite or have no length: "
-                        "they are made anew from the faces",
+                        "Relief computes them from the faces",
                         name, count, corners));
 }
 

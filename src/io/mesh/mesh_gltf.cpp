@@ -24,7 +24,7 @@ namespace relief {
 
 namespace {
 
-/// Of morph targets: the animation's, the node's, or the mesh's.
+/// Returns the weights of morph targets: those of the animation, of the node, or of the mesh.
 std::vector<float> read_weights(const JsonNode& node, const JsonNode& mesh, const GltfPose& pose) {
     if (pose.weights) return *pose.weights;
     auto list = node.find("weights");
@@ -65,6 +65,7 @@ class GltfBuilder {
           further_(options),
           nodes_(file.list("nodes")),
           meshes_(file.list("meshes")),
+          uv_transforms_(file),
           positions_(mesh_.positions),
           normals_(mesh_.normals),
           uvs_(mesh_.uvs) {
@@ -89,11 +90,16 @@ class GltfBuilder {
         return std::move(mesh_);
     }
 
-    /// What of the file does not show in the mesh.
+    /// Lists the contents of the file that the mesh does not show.
     std::vector<std::string> list_warnings() const {
-        std::vector<std::string> warnings;
-        for (const std::string& warning : warnings_)
-            if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
+        std::vector<std::string> warnings = warnings_;
+        std::ranges::move(losses_.list_warnings(name_), std::back_inserter(warnings));
+        std::ranges::move(uv_transforms_.list_warnings(), std::back_inserter(warnings));
+        for (const int set : whole_uv_sets_)
+            warnings.push_back(
+                fmt::format("{}: uvs of set {} are whole numbers, and no KHR_texture_transform makes parts "
+                            "of a picture of them: export them as floats (gltfpack -noq)",
+                            name_, set));
         if (skinned_.empty()) return warnings;
         constexpr size_t kMostNamed = 4;
         std::string names;
@@ -153,8 +159,7 @@ class GltfBuilder {
             const Item item = open.back();
             open.pop_back();
             const auto index = size_t(item.node - nodes_.data());
-            if (is_seen[index]) item.node->fail("stands twice in the tree of nodes", kDamagedHint);
-            is_seen[index] = true;
+            mark_seen(*item.node, is_seen);
             if (is_hidden_gltf_node(*item.node)) {
                 mark_descendants(*item.node, is_seen);
                 continue;
@@ -182,7 +187,13 @@ class GltfBuilder {
                 instances_.push_back({&mesh, {}, read_weights(mesh, mesh, {})});
     }
 
-    /// Of a hidden node; its descendants are hidden, too.
+    void mark_seen(const JsonNode& node, std::vector<bool>& is_seen) const {
+        const auto index = size_t(&node - nodes_.data());
+        if (is_seen[index]) node.fail("is listed twice in the tree of nodes", kDamagedHint);
+        is_seen[index] = true;
+    }
+
+    /// Marks the descendants of a hidden node, which are hidden, too.
     void mark_descendants(const JsonNode& node, std::vector<bool>& is_seen) const {
         std::vector<const JsonNode*> open{&node};
         while (!open.empty()) {
@@ -191,9 +202,7 @@ class GltfBuilder {
             if (const auto children = parent.find("children"))
                 for (const JsonNode& child : children->elements()) {
                     open.push_back(&GltfFile::resolve(child, nodes_, "node"));
-                    const auto index = size_t(open.back() - nodes_.data());
-                    if (is_seen[index]) open.back()->fail("stands twice in the tree of nodes", kDamagedHint);
-                    is_seen[index] = true;
+                    mark_seen(*open.back(), is_seen);
                 }
         }
     }
@@ -216,10 +225,9 @@ class GltfBuilder {
         const auto [found, is_new] = parts_.try_emplace(&mesh);
         if (!is_new) return;
         for (const JsonNode& primitive : mesh.get("primitives").elements()) {
-            GltfPrimitive part =
-                read_gltf_primitive(file_, primitive, uv_set_, further_.numbers(), warnings_);
+            GltfPrimitive part = read_gltf_primitive(file_, primitive, uv_set_, further_.numbers(), losses_);
             if (part.face_sizes.empty()) continue;
-            if (targets == Targets::read) read_gltf_targets(file_, primitive, part, warnings_);
+            if (targets == Targets::read) read_gltf_targets(file_, primitive, part, losses_);
             place_uvs(primitive, part);
             with_uv_ += part.uvs.empty() ? 0 : 1;
             most_uv_sets_ = std::max(most_uv_sets_, part.uv_set_count);
@@ -233,15 +241,12 @@ class GltfBuilder {
     void place_uvs(const JsonNode& primitive, GltfPrimitive& part) {
         const auto place = [&](std::span<const float>& uvs, int set) {
             if (uvs.empty()) return;
-            const auto transform = find_uv_transform(file_, primitive, set, warnings_);
+            const auto transform = uv_transforms_.find(primitive, set);
             if (transform)
                 uvs = file_.keep(transform_uvs(uvs, *transform));
             else if (file_.has_whole_numbers(
                          primitive.get("attributes").get(fmt::format("TEXCOORD_{}", set))))
-                warnings_.push_back(fmt::format(
-                    "{}: uvs of set {} are whole numbers, and no KHR_texture_transform makes parts "
-                    "of a picture of them: export them as floats (gltfpack -noq)",
-                    name_, set));
+                whole_uv_sets_.insert(set);
         };
         place(part.uvs, uv_set_);
         for (size_t n = 0; n < part.further_uvs.size(); ++n)
@@ -254,7 +259,7 @@ class GltfBuilder {
                  fmt::format("it has {}, counted from 0", most_uv_sets_));
     }
 
-    /// What a vertex of a part has become in the mesh.
+    /// Indices in the mesh of a vertex of a part.
     struct Corner {
         uint32_t copy = 0; ///< of which part, counted from 1: parts may share vertices by the million
         uint32_t position = kNoIndex, uv = kNoIndex, normal = kNoIndex;
@@ -327,6 +332,9 @@ class GltfBuilder {
     int uv_set_;
     FurtherUvs further_;
     std::vector<JsonNode> nodes_, meshes_;
+    GltfUvTransforms uv_transforms_;
+    GltfLosses losses_;
+    std::set<int> whole_uv_sets_; ///< sets of integers that are no parts of a picture
     Mesh mesh_;
     PointWelder positions_, normals_;
     UvWelder uvs_;

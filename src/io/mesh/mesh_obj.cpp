@@ -125,7 +125,9 @@ class ObjReader {
         };
         warn(unknown_, "{} lines begin with words that OBJ does not have, and are left out");
         warn(surfaces_, "{} curved surfaces and calls of other files are not read: export polygons");
-        warn(bad_uvs_, "{} corners have uv indices that are out of range: their faces have no uvs");
+        warn(bad_uvs_,
+             "{} corners have uv indices that are out of range: their faces have no uvs, export the mesh "
+             "again");
         warn(bad_normals_, "{} corners have normal indices that are out of range: the normals are left out");
     }
 
