@@ -70,6 +70,7 @@ TEST_F(FbxAxes, that_are_not_three_and_other_units_are_warned_of) {
     EXPECT_EQ(load({1, 1, 1, 1, 0, 1}).upper, (Vec3f{1, 1, 1}));
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_HAS(warnings_[0], "a.fbx: its axes (right 0, up 1, front 1");
+    EXPECT_HAS(warnings_[0], "Relief takes y for up and z for front; export it with Y up");
     EXPECT_EQ(load({1, 1, 2, 1, 0, 1}, 2.54).upper, (Vec3f{1, 1, 1}));
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_HAS(warnings_[0], "its unit of length is 2.54 cm");

@@ -44,7 +44,7 @@ aiMatrix4x4 find_turn_of_axes(const aiScene& scene, const std::string& name,
     if (!(is_used[0] && is_used[1] && is_used[2])) {
         warnings.push_back(
             fmt::format("{}: its axes (right {}, up {}, front {}, counted from 0) are no three "
-                        "different ones: y is taken for up and z for front",
+                        "different ones: Relief takes y for up and z for front; export it with Y up",
                         name, right->index, up->index, front->index));
         return turn;
     }
