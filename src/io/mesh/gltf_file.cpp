@@ -157,7 +157,7 @@ std::string_view GltfFile::find_buffer(const JsonNode& index) {
     return bytes.substr(0, size);
 }
 
-/// Of a bufferView, or of its compressed form.
+/// Returns the bytes of a bufferView or of its compressed form.
 std::string_view GltfFile::find_bytes(const JsonNode& place) {
     const std::string_view buffer = find_buffer(place.get("buffer"));
     const size_t offset = read_offset(place);

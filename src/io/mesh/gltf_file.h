@@ -37,7 +37,7 @@ class GltfFile {
     /// They live as long as the file: many parts may share them.
     std::span<const float> read_floats(const JsonNode& accessor_index, size_t width);
     std::vector<uint32_t> read_indices(const JsonNode& accessor_index);
-    /// What integers of an accessor are parts of, where it says that they are.
+    /// Returns the largest integer of an accessor whose integers are parts of it; nothing for other accessors.
     std::optional<float> find_largest(const JsonNode& accessor_index) const;
     /// Whether the values of an accessor are integers that mean themselves, not parts of the largest one.
     bool has_whole_numbers(const JsonNode& accessor_index) const;
@@ -49,7 +49,7 @@ class GltfFile {
   private:
     struct Values;
     Values find_values(const JsonNode& accessor, size_t width);
-    /// Those of which `place` says view and offset.
+    /// Finds the values whose view and offset `place` names.
     Values locate(const JsonNode& place, const JsonNode& component_type, size_t count, size_t width);
     static std::vector<float> load_floats(const Values& values);
     static std::vector<uint32_t> load_indices(const Values& values, const JsonNode& place);

@@ -1,4 +1,4 @@
-// Where the nodes of a glTF file are, and the copies of their meshes.
+// Reads the places of the nodes of a glTF file, and the copies of their meshes.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// Of a node, as an animation moves it. Throws bad_input.
+/// Returns the transform of a node as an animation moves it. Throws bad_input.
 Affine read_gltf_transform(const JsonNode& node, const GltfPose& pose);
 
 /// The copies of the mesh of a node in its own space, by EXT_mesh_gpu_instancing; without it one that stays

@@ -1,4 +1,4 @@
-// What all readers of EXR files have in common: windows of headers, and pixels of an open file or part.
+// Code that all readers of EXR files share: windows of headers, and pixels of an open file or part.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What readers of pictures notice beside the pixels.
+// Remarks that readers of pictures make beside the pixels.
 #pragma once
 
 #include <string>

@@ -24,7 +24,7 @@ class RowSource : public PixelSource {
     virtual void decode(const VisitRow& visit) = 0;
 
     /// For constructors, once the header has the size of the file: turns it, and notes that in `remarks`.
-    /// What is no orientation counts as upright.
+    /// Any other number counts as upright.
     void turn(int orientation, const std::string& name, PictureRemarks& remarks);
 
     PixelHeader header_;
