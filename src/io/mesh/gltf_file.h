@@ -37,7 +37,8 @@ class GltfFile {
     /// They live as long as the file: many parts may share them.
     std::span<const float> read_floats(const JsonNode& accessor_index, size_t width);
     std::vector<uint32_t> read_indices(const JsonNode& accessor_index);
-    /// Returns the largest integer of an accessor whose integers are parts of it; nothing for other accessors.
+    /// Returns the largest integer of an accessor whose integers are parts of it; nothing for other
+    /// accessors.
     std::optional<float> find_largest(const JsonNode& accessor_index) const;
     /// Whether the values of an accessor are integers that mean themselves, not parts of the largest one.
     bool has_whole_numbers(const JsonNode& accessor_index) const;
