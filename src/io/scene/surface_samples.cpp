@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "base/udim.h"
 #include "io/scene/asset_cache.h"
 #include "math/affine.h"
 #include "scene/coordinate_limit.h"
@@ -49,9 +51,9 @@ Vec3f fetch_nearest(const Displacement& map, const Vec2f& uv) {
     const MapTile* tile = &map.tiles.front();
     const float column = std::floor(uv.x), row = std::floor(uv.y);
     if (map.is_udim) {
-        const auto found = std::find_if(map.tiles.begin(), map.tiles.end(), [&](const MapTile& candidate) {
-            return float(candidate.udim) == 1001 + column + 10 * row;
-        });
+        const std::optional<int> udim = find_udim(column, row);
+        if (!udim) return {};
+        const auto found = std::ranges::find(map.tiles, *udim, &MapTile::udim);
         if (found == map.tiles.end()) return {};
         tile = &*found;
     }
