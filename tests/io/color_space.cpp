@@ -133,6 +133,21 @@ TEST_F(ColorSpaces, pictures_are_written_in_one_and_read_back_in_linear_rec709) 
     }
 }
 
+TEST_F(ColorSpaces, files_with_other_primaries_are_warned_of_where_no_space_is_named) {
+    Image image = make_layers();
+    image.channels.resize(3), image.pixels.resize(6);
+    image.metadata[kColorSpaceTag] = "acescg";
+    write_image(image, folder_ / "p.exr");
+    const auto list_warnings = [&](const std::string& space) {
+        return parse_scene(R"({"environment": {"file": "p.exr")" + space + "}}", folder_, "s.json").warnings;
+    };
+    const std::vector<std::string> warnings = list_warnings("");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS(warnings[0], "names primaries of another colour space");
+    EXPECT_TRUE(list_warnings(R"(, "color_space": "acescg")").empty());
+    EXPECT_TRUE(list_warnings(R"(, "color_space": "linear")").empty());
+}
+
 TEST_F(ColorSpaces, a_file_in_an_unknown_one_is_refused) {
     Image image = make_layers();
     image.metadata[kColorSpaceTag] = "acecg";

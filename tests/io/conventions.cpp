@@ -287,6 +287,12 @@ TEST_F(Conventions, tags_of_colour_are_read_from_the_file_itself) {
         spec.set_format(OIIO::TypeDesc::HALF);
     });
     EXPECT_EQ(get_tag("c.exr"), "attribute chromaticities");
+    write_tagged("x.exr", [](OIIO::ImageSpec& spec) {
+        const float values[8] = {1, 0, 0, 1, 0, 0, 0.3333f, 0.3333f};
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), values);
+        spec.set_format(OIIO::TypeDesc::HALF);
+    });
+    EXPECT_EQ(get_tag("x.exr"), "attribute chromaticities, which are not those of Rec.709");
     write_tagged("p.tif", [](OIIO::ImageSpec& spec) {
         const std::vector<uint8_t> profile(128, 7);
         spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, 128), profile.data());

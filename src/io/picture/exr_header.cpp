@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,6 +11,7 @@
 
 #include <OpenEXR/ImfCompression.h>
 
+#include "io/picture/color_space.h"
 #include "relief/image.h"
 
 namespace relief {
@@ -53,6 +56,20 @@ std::optional<Attribute> read_attribute(std::istream& stream) {
     const std::optional<uint32_t> bytes = read_uint32(stream);
     if (!type || !bytes) return std::nullopt;
     return Attribute{*name, *type, *bytes};
+}
+
+/// Whether the eight numbers of an attribute of chromaticities are those of Rec.709, to three decimals. A cut
+/// attribute counts as such.
+bool is_rec709(std::istream& stream) {
+    constexpr float kRounding = 1e-3f;
+    const Chromaticities c = find_chromaticities("linear");
+    for (const float expected :
+         {c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y}) {
+        const std::optional<uint32_t> bits = read_uint32(stream);
+        if (!bits) return true;
+        if (!(std::fabs(std::bit_cast<float>(*bits) - expected) <= kRounding)) return false;
+    }
+    return true;
 }
 
 /// Types whose values have one size (OpenEXR file layout, 2023, "Attribute types").
@@ -154,7 +171,8 @@ std::optional<std::string> find_missized_exr_attribute(std::istream& stream, uin
 std::string find_exr_color_tag(std::istream& stream) {
     if (!read_start(stream)) return {};
     while (const std::optional<Attribute> attribute = read_attribute(stream)) {
-        if (attribute->name == "chromaticities") return "attribute chromaticities";
+        if (attribute->name == "chromaticities")
+            return is_rec709(stream) ? "attribute chromaticities" : kOtherPrimariesTag;
         if (attribute->name == kRenderedTag) return kRenderedTag;
         stream.seekg(std::streamoff(attribute->bytes), std::ios::cur);
     }

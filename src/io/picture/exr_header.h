@@ -22,8 +22,12 @@ std::string find_unknown_exr_compression(std::istream& stream);
 /// Whether the first part of an EXR stream says that its picture is the six faces of a cube.
 bool is_exr_cube(std::istream& stream);
 
-/// What the header of an EXR stream says of colours: "attribute chromaticities", kRenderedTag for a picture
-/// that Relief rendered; empty: nothing, or no EXR.
+/// Tag of colours whose primaries or white are not those of Rec.709.
+inline constexpr const char* kOtherPrimariesTag = "attribute chromaticities, which are not those of Rec.709";
+
+/// Returns what the header of an EXR stream says of colours: "attribute chromaticities", kOtherPrimariesTag,
+/// or kRenderedTag for a picture that Relief rendered. Returns an empty text if it says nothing, or if this
+/// is no EXR.
 std::string find_exr_color_tag(std::istream& stream);
 
 } // namespace relief

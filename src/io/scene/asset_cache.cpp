@@ -11,6 +11,7 @@
 #include "image/texel_layout.h"
 #include "io/file_system.h"
 #include "io/picture/color_space.h"
+#include "io/picture/exr_header.h"
 #include "io/scene/tile_names.h"
 #include "relief/error.h"
 #include "relief/half.h"
@@ -225,6 +226,12 @@ std::shared_ptr<const Texture> AssetCache::decode(std::shared_ptr<Texture> textu
             ErrorKind::bad_input,
             {"is a map of a cube's faces (envmap), and surroundings are read by longitude and latitude",
              texture->file, "OpenEXR's command line: exrenvmap -l IN.exr OUT.exr"});
+    if (space.empty() && use != TextureUse::vector && texture->colour_tag == kOtherPrimariesTag)
+        warnings_.push_back(fmt::format(
+            "{}: its header names primaries of another colour space ({}), but its values are taken for "
+            "linear Rec.709: write color_space beside the file in a scene file, such as acescg, or "
+            "linear if the header is wrong",
+            texture->file, texture->colour_tag));
     if (use == TextureUse::color && space.empty()) decode_colors(*texture);
     if (use != TextureUse::vector) spread_grey(*texture);
     if (!space.empty()) decode_texture(space, *texture);
