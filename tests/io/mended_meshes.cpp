@@ -18,7 +18,7 @@ namespace relief {
 namespace {
 
 constexpr const char* kPoints = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n";
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
 class MendedMeshes : public FileTest {
   protected:
@@ -109,7 +109,7 @@ TEST_F(MendedMeshes, uvs_that_are_not_finite_are_none) {
     expect_warning("u.obj: 1 of 2 faces have uvs in set 0 that are not finite");
     Mesh other = mesh;
     other.uv_indices = {0, 1, 2, 3, 1, 0, 2};
-    other.further_uvs = {{2, {{kNan, 0}}, std::vector<uint32_t>(7, 0)}};
+    other.further_uvs = {{2, {{kNoNumber, 0}}, std::vector<uint32_t>(7, 0)}};
     std::vector<std::string> warnings;
     mend_mesh(other, "m", warnings);
     ASSERT_EQ(warnings.size(), 1u);
@@ -154,7 +154,7 @@ TEST_F(MendedMeshes, attributes_of_gltf_that_cannot_be_read_are_left_out) {
     expect_warning("has 1 values for 4 vertices");
     EXPECT_TRUE(read("NORMAL", [](GltfDocument&) { return 77; }).normals.empty());
     expect_warning("there is no accessor 77");
-    const std::vector<float> bad = {kNan, 0, 1, kNan, 0, 1, kNan, 0, 1, kNan, 0, 1};
+    const std::vector<float> bad = {kNoNumber, 0, 1, kNoNumber, 0, 1, kNoNumber, 0, 1, kNoNumber, 0, 1};
     EXPECT_TRUE(read("NORMAL", [&](GltfDocument& d) { return d.add_floats("VEC3", bad); }).normals.empty());
     expect_warning("6 of 6 corners have normals");
     EXPECT_HAS(message_of([&] { read("POSITION", without_buffer("VEC3")); }), "has no 'bufferView'");
@@ -186,7 +186,7 @@ TEST_F(MendedMeshes, what_a_render_refuses_is_an_error_of_inspect) {
     };
     const Mesh sound = load("s.obj", std::string(kPoints) + "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\n");
     Mesh mesh = sound;
-    mesh.normals[0].x = kNan;
+    mesh.normals[0].x = kNoNumber;
     EXPECT_TRUE(has_error(mesh, "E-NAN"));
     mesh = sound, mesh.uvs[0].x = 1e7f;
     EXPECT_TRUE(has_error(mesh, "E-SCENE"));
@@ -195,7 +195,7 @@ TEST_F(MendedMeshes, what_a_render_refuses_is_an_error_of_inspect) {
     mesh = sound;
     for (Vec3f& p : mesh.positions) p.y = 0;
     EXPECT_TRUE(has_error(mesh, "E-SCENE")) << "no face has an area";
-    mesh = sound, mesh.tangents.assign(4, {kNan, 0, 0, 1});
+    mesh = sound, mesh.tangents.assign(4, {kNoNumber, 0, 0, 1});
     EXPECT_TRUE(has_error(mesh, "E-SCENE"));
 }
 

@@ -31,12 +31,12 @@ constexpr std::array<TypeNames, 8> kTypes = {{{"char", "int8", 1},
                                               {"double", "float64", 8}}};
 
 std::vector<std::string_view> split_words(std::string_view line) {
-    constexpr std::string_view kSpaces = " \t";
+    constexpr std::string_view kBlanks = " \t";
     std::vector<std::string_view> words;
-    for (size_t at = line.find_first_not_of(kSpaces); at < line.size();) {
-        const size_t end = std::min(line.find_first_of(kSpaces, at), line.size());
+    for (size_t at = line.find_first_not_of(kBlanks); at < line.size();) {
+        const size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
         words.push_back(line.substr(at, end - at));
-        at = line.find_first_not_of(kSpaces, end);
+        at = line.find_first_not_of(kBlanks, end);
     }
     return words;
 }

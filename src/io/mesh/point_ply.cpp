@@ -12,15 +12,15 @@ namespace relief {
 namespace {
 
 enum Value : size_t { x, y, z, qw, qx, qy, qz, scale, scale_x, scale_y, scale_z, material, kValues };
-constexpr std::array<std::string_view, kValues> kNames = {
+constexpr std::array<std::string_view, kValues> kPointNames = {
     "x", "y", "z", "qw", "qx", "qy", "qz", "scale", "scale_x", "scale_y", "scale_z", "material"};
 
 /// Which of the values the properties of an element are; kValues: none that is read.
 std::vector<size_t> match_properties(const PlyElement& element) {
     std::vector<size_t> places;
     for (const PlyProperty& property : element.properties) {
-        const auto found = std::ranges::find(kNames, property.name);
-        places.push_back(property.count_type ? size_t(kValues) : size_t(found - kNames.begin()));
+        const auto found = std::ranges::find(kPointNames, property.name);
+        places.push_back(property.count_type ? size_t(kValues) : size_t(found - kPointNames.begin()));
     }
     return places;
 }
