@@ -18,6 +18,7 @@ PACKAGES = {
     "OPENCOLORIO_FOLDER": ["libopencolorio-dev"],
     "OpenEXR": ["libopenexr-dev", "libimath-dev"],
     "PNG": ["libpng-dev"],
+    "ZLIB": ["zlib1g-dev"],
     "TIFF": ["libtiff-dev"],
     "JPEG": ["libjpeg-dev"],
     "nlohmann_json": ["nlohmann-json3-dev"],
