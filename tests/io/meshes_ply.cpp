@@ -163,4 +163,64 @@ TEST_F(PlyFiles, damaged_values_name_their_place) {
 
 } // namespace
 
+TEST_F(PlyFiles, numbers_that_the_header_does_not_declare_are_left_out_where_lines_show_them) {
+    const std::string elements = std::string(kVertexLines) + "property uchar red\n" + kFaceLines;
+    const Mesh plain =
+        load_mesh(write("a.ply", make_ascii(elements, "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n")));
+    const auto load = [&](const std::string& text, std::vector<std::string>& warnings) {
+        return load_mesh(write("b.ply", text), {}, warnings);
+    };
+    std::vector<std::string> warnings;
+    const Mesh longer = load(
+        make_ascii(elements, "0 0 0 9\n1 0 0 9 8 \r\n\n1 1 0 9 8 7\n0 1 0 9\n4 0 1 2 3 0.5 0.25"), warnings);
+    EXPECT_EQ(longer.positions, plain.positions);
+    EXPECT_EQ(longer.position_indices, plain.position_indices);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS(warnings[0],
+               "b.ply: 3 lines hold more numbers than the header declares, the first of them line 13");
+    // Read one after the other they would fit, too: 8 vertices in 4 lines.
+    warnings.clear();
+    const std::string two =
+        std::string(kVertexLines) + "element face 4\nproperty list uchar int vertex_indices\n";
+    const Mesh misread = load(make_ascii(two, "0 0 0 1 0 0\n1 0 0 0 1 0\n1 1 0 4 0 0\n0 1 0 0 0 0\n"
+                                              "3 0 1 2\n3 0 2 3\n3 0 1 3\n3 1 2 3\n"),
+                              warnings);
+    EXPECT_EQ(misread.face_sizes, (std::vector<uint32_t>{3, 3, 3, 3}));
+    EXPECT_EQ(warnings.size(), 1u);
+}
+
+TEST_F(PlyFiles, lines_mean_nothing_where_elements_do_not_fit_them) {
+    const std::string elements = std::string(kVertexLines) + kFaceLines;
+    std::vector<std::string> warnings;
+    for (const char* values : {"0 0 0 1 0 0\n1 1 0 0 1 0\n4 0 1 2 3\n", "0 0 0 1 0 0 1 1 0 0 1 0 4 0 1 2 3\n",
+                               "0 0\n0\n1 0 0\n1 1 0 0 1\n0 4 0\n1 2 3"}) {
+        const Mesh mesh = load_mesh(write("a.ply", make_ascii(elements, values)), {}, warnings);
+        EXPECT_EQ(mesh.position_indices, (std::vector<uint32_t>{0, 1, 2, 3})) << values;
+    }
+    EXPECT_TRUE(warnings.empty());
+    // One line more than elements: they are read one after the other, and the face has no corners.
+    EXPECT_HAS(message_of([&] {
+                   load_mesh(write("b.ply", make_ascii(elements, "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n"
+                                                                 "4 0 1 2 3\n4 0 1 2 3\n")));
+               }),
+               "the mesh has no faces");
+}
+
+TEST_F(PlyFiles, unknown_words_of_a_sound_header_are_warned_of) {
+    const std::string elements = std::string("texture a.png\n") + kVertexLines + "author me\n" + kFaceLines;
+    std::vector<std::string> warnings;
+    const Mesh mesh =
+        load_mesh(write("a.ply", make_ascii(elements, std::string(kSquare) + "4 0 1 2 3\n")), {}, warnings);
+    EXPECT_EQ(mesh.face_sizes, std::vector<uint32_t>{4});
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS(warnings[0],
+               "a.ply: 2 lines of the header begin with unknown words and are not read, the first of "
+               "them line 4: 'texture'");
+    EXPECT_HAS(message_of([&] {
+                   load_mesh(
+                       write("b.ply", make_ascii("elemnt face 1\n" + std::string(kVertexLines), kSquare)));
+               }),
+               "b.ply, line 4: unknown word 'elemnt'");
+}
+
 } // namespace relief

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,11 +20,12 @@ using NameList = std::array<std::string_view, 4>;
 
 class PlyBuilder {
   public:
-    PlyBuilder(std::string_view bytes, const std::string& name)
-        : name_(name), header_(parse_ply_header(bytes, name)), cursor_(bytes, name, header_) {}
+    PlyBuilder(std::string_view bytes, const std::string& name, PlyLines lines)
+        : name_(name), header_(parse_ply_header(bytes, name)), cursor_(bytes, name, header_, lines) {}
 
     Mesh build() {
         const PlyElement *vertices = find_element("vertex"), *faces = find_element("face");
+        if (!vertices || !faces) refuse_unknown_words(header_, name_);
         if (!vertices || !faces)
             fail("the mesh has no faces", "export the polygons as well: a cloud of points has no surface");
         vertex_count_ = vertices->count;
@@ -35,10 +38,37 @@ class PlyBuilder {
                 skip(element);
             if (std::max(vertices, faces) == &element) break; // nothing behind it is wanted
         }
+        cursor_.finish();
         return weld();
     }
 
+    bool is_text() const { return header_.format == PlyFormat::ascii; }
+
+    /// Whether elements of the text end before their lines do.
+    bool ends_in_lines() const { return cursor_.ends_in_lines(); }
+
+    /// Whether behind the elements read by lines as many lines are left as elements.
+    bool has_all_lines() const {
+        uint64_t left = 0;
+        bool is_behind = false;
+        const PlyElement* last = std::max(find_element("vertex"), find_element("face"));
+        for (const PlyElement& element : header_.elements) {
+            if (is_behind && !element.properties.empty()) left += element.count;
+            is_behind = is_behind || &element == last;
+        }
+        return cursor_.count_lines() == left;
+    }
+
     void add_warnings(std::vector<std::string>& warnings) const {
+        if (const PlyUnknownWords& unknown = header_.unknown; unknown.count > 0)
+            warnings.push_back(fmt::format("{}: {} lines of the header begin with unknown words and are not "
+                                           "read, the first of them line {}: '{}'",
+                                           name_, unknown.count, unknown.first_line, unknown.first_word));
+        if (cursor_.long_line_count() > 0)
+            warnings.push_back(
+                fmt::format("{}: {} lines hold more numbers than the header declares, the first "
+                            "of them line {}: the numbers at their ends are left out",
+                            name_, cursor_.long_line_count(), cursor_.find_first_long_line()));
         if (misfit_uvs_ > 0)
             warnings.push_back(fmt::format("{}: {} faces have other numbers of texture coordinates than of "
                                            "corners, and are read without uvs",
@@ -192,13 +222,37 @@ class PlyBuilder {
     std::vector<uint32_t> corners_; ///< of the vertices as they stand in the file
 };
 
+/// Some writers add numbers to their lines that they do not declare. Nothing where the elements do not fit
+/// the lines either.
+std::optional<Mesh> read_by_lines(std::string_view bytes, const std::string& name,
+                                  std::vector<std::string>* warnings) {
+    try {
+        PlyBuilder builder(bytes, name, PlyLines::by_lines);
+        Mesh mesh = builder.build();
+        if (!builder.has_all_lines()) return {};
+        if (warnings) builder.add_warnings(*warnings);
+        return mesh;
+    } catch (const Error&) {
+        return {};
+    }
+}
+
 } // namespace
 
 Mesh parse_ply(std::string_view bytes, const std::string& name, std::vector<std::string>* warnings) {
-    PlyBuilder builder(bytes, name);
-    Mesh mesh = builder.build();
+    PlyBuilder builder(bytes, name, PlyLines::ignored);
+    std::optional<Mesh> mesh;
+    try {
+        mesh = builder.build();
+    } catch (const Error&) {
+        if (builder.is_text()) mesh = read_by_lines(bytes, name, warnings);
+        if (!mesh) throw;
+        return std::move(*mesh);
+    }
+    if (builder.is_text() && builder.ends_in_lines())
+        if (std::optional<Mesh> by_lines = read_by_lines(bytes, name, warnings)) return std::move(*by_lines);
     if (warnings) builder.add_warnings(*warnings);
-    return mesh;
+    return std::move(*mesh);
 }
 
 } // namespace relief

@@ -5,6 +5,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <system_error>
 
@@ -45,13 +46,45 @@ void PlyCursor::skip(const PlyProperty& property) {
     for (uint64_t k = 0; k < count; ++k) read(property.type);
 }
 
-double PlyCursor::read_word() {
-    const auto is_space = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+namespace {
+
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool is_blank(char c) { return is_space(c) && c != '\n' && c != '\r'; }
+
+} // namespace
+
+void PlyCursor::begin_line() {
     while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
-    if (at_ < bytes_.size() && bytes_[at_] == '+') ++at_;
+    line_end_ = find_line_end(at_);
+}
+
+void PlyCursor::leave_element() {
+    while (at_ < line_end_ && is_blank(bytes_[at_])) ++at_;
+    if (at_ >= line_end_ || bytes_[at_] == '\n' || bytes_[at_] == '\r') return;
+    ends_in_lines_ = true;
+    if (lines_ == PlyLines::ignored) return;
+    if (long_line_count_++ == 0) first_long_line_ = at_;
+    at_ = line_end_;
+}
+
+size_t PlyCursor::find_first_long_line() const { return find_place(bytes_, first_long_line_).line; }
+
+uint64_t PlyCursor::count_lines() const {
+    uint64_t count = 0;
+    for (size_t at = at_; at < bytes_.size();) {
+        const size_t end = find_line_end(at);
+        if (!std::all_of(bytes_.begin() + ptrdiff_t(at), bytes_.begin() + ptrdiff_t(end), is_space)) ++count;
+        at = end + 1;
+    }
+    return count;
+}
+
+double PlyCursor::read_word() {
+    while (at_ < line_end_ && is_space(bytes_[at_])) ++at_;
+    if (at_ < line_end_ && bytes_[at_] == '+') ++at_;
     double value = 0;
-    const char *begin = bytes_.data() + at_, *end = bytes_.data() + bytes_.size();
-    if (begin == end) fail("the file ends early");
+    const char *begin = bytes_.data() + at_, *end = bytes_.data() + line_end_;
+    if (begin == end) fail(line_end_ == bytes_.size() ? "the file ends early" : "a line has too few numbers");
     const auto [stop, code] = std::from_chars(begin, end, value);
     if (code != std::errc() || (stop != end && !is_space(*stop)))
         fail("a number is missing, malformed or out of range");

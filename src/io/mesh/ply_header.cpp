@@ -41,6 +41,8 @@ std::vector<std::string_view> split_words(std::string_view line) {
     return words;
 }
 
+constexpr const char* kDamagedHeaderHint = "the file is damaged: export it again";
+
 class HeaderParser {
   public:
     HeaderParser(std::string_view bytes, const std::string& name)
@@ -64,28 +66,33 @@ class HeaderParser {
             else if (words[0] == "property")
                 add_property(words);
             else
-                fail(fmt::format("unknown word '{}' in the header", words[0]), kDamagedHint);
+                add_unknown(words[0]);
         }
-        if (!has_format_) fail("the header names no format", kDamagedHint);
+        if (!has_format_) fail("the header names no format", kDamagedHeaderHint);
         header_.byte_count = at_;
         return std::move(header_);
     }
 
   private:
-    static constexpr const char* kDamagedHint = "the file is damaged: export it again";
-
     [[noreturn]] void fail(const std::string& message, const std::string& hint) const {
+        refuse_unknown_words(header_, name_); // they came first
         throw Error(ErrorKind::bad_input, {message, fmt::format("{}, line {}", name_, line_), hint});
     }
 
     std::string_view next_line() {
         ++line_;
         const size_t end = bytes_.find(ends_with_cr_ ? '\r' : '\n', at_);
-        if (end == std::string_view::npos) fail("the header has no end", kDamagedHint);
+        if (end == std::string_view::npos) fail("the header has no end", kDamagedHeaderHint);
         std::string_view line = bytes_.substr(at_, end - at_);
         at_ = end + 1;
         if (line.ends_with('\r')) line.remove_suffix(1);
         return line;
+    }
+
+    void add_unknown(std::string_view word) {
+        if (header_.unknown.count++ > 0) return;
+        header_.unknown.first_line = line_;
+        header_.unknown.first_word = word;
     }
 
     void add_format(const std::vector<std::string_view>& words) {
@@ -109,18 +116,18 @@ class HeaderParser {
             const auto [stop, code] = std::from_chars(words[2].data(), end, element.count);
             is_understood = stop == end && code == std::errc();
         }
-        if (!is_understood) fail("an element needs a name and a count", kDamagedHint);
+        if (!is_understood) fail("an element needs a name and a count", kDamagedHeaderHint);
         element.name = words[1];
         for (const PlyElement& other : header_.elements)
             if (other.name == element.name)
-                fail(fmt::format("element '{}' stands twice", element.name), kDamagedHint);
+                fail(fmt::format("element '{}' stands twice", element.name), kDamagedHeaderHint);
         header_.elements.push_back(std::move(element));
     }
 
     void add_property(const std::vector<std::string_view>& words) {
-        if (header_.elements.empty()) fail("a property stands before the first element", kDamagedHint);
+        if (header_.elements.empty()) fail("a property stands before the first element", kDamagedHeaderHint);
         const bool is_list = words.size() == 5 && words[1] == "list";
-        if (!is_list && words.size() != 3) fail("a property needs a type and a name", kDamagedHint);
+        if (!is_list && words.size() != 3) fail("a property needs a type and a name", kDamagedHeaderHint);
         PlyProperty property;
         property.name = words.back();
         property.type = find_type(words[words.size() - 2]);
@@ -146,6 +153,13 @@ class HeaderParser {
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
     if (is_wide_text(bytes)) throw Error(ErrorKind::bad_input, {kWideText, name, kWideTextHint});
     return HeaderParser(bytes, name).parse();
+}
+
+void refuse_unknown_words(const PlyHeader& header, const std::string& name) {
+    if (header.unknown.count == 0) return;
+    throw Error(ErrorKind::bad_input,
+                {fmt::format("unknown word '{}' in the header", header.unknown.first_word),
+                 fmt::format("{}, line {}", name, header.unknown.first_line), kDamagedHeaderHint});
 }
 
 size_t get_byte_size(PlyType type) { return kTypes[size_t(type)].bytes; }

@@ -24,14 +24,24 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
 };
 
+/// Lines of a header that begin with words that PLY does not have.
+struct PlyUnknownWords {
+    size_t count = 0, first_line = 0;
+    std::string first_word;
+};
+
 struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
     std::vector<PlyElement> elements; ///< each name once
     size_t byte_count = 0;            ///< of the header; the values begin there
+    PlyUnknownWords unknown;          ///< passed over
 };
 
-/// `name` is for messages. Throws bad_input with the line for anything but a complete, known PLY header.
+/// `name` is for messages. Throws bad_input with the line for anything but a complete PLY header.
 PlyHeader parse_ply_header(std::string_view bytes, const std::string& name);
+
+/// Throws bad_input with the line where the header has unknown words.
+void refuse_unknown_words(const PlyHeader& header, const std::string& name);
 
 size_t get_byte_size(PlyType type);
 

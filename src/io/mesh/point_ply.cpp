@@ -79,6 +79,7 @@ void read_points(const PlyElement& element, const std::string& name, size_t mate
 
 InstancePoints parse_points(std::string_view bytes, const std::string& name, size_t material_count) {
     const PlyHeader header = parse_ply_header(bytes, name);
+    refuse_unknown_words(header, name);
     PlyCursor cursor(bytes, name, header);
     InstancePoints points;
     for (const PlyElement& element : header.elements) {
