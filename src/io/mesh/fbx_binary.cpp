@@ -87,7 +87,8 @@ class FbxBinaryParser {
             FbxRecord record;
             record.name = bytes_.substr(at_, name_size);
             at_ += name_size;
-            if (!has(value_bytes) || !read_values(record, value_count, at_ + value_bytes)) return false;
+            if (!has(value_bytes) || at_ + value_bytes > end) return false;
+            if (!read_values(record, value_count, at_ + value_bytes)) return false;
             if (record_end != 0) { // some writers leave it out where there are no children
                 if (record_end < at_ || record_end > end) return false;
                 record.has_scope = record_end > at_;

@@ -45,7 +45,7 @@ std::vector<float> share_weight(double percent, const std::vector<float>& full, 
     for (const bool is_negative : {percent < 0, !(percent < 0)}) {
         if (!order.empty()) break; // else the other side goes on beyond 0
         for (size_t k = 0; k < shape_count; ++k)
-            if (full[k] != 0 && (full[k] < 0) == is_negative) order.push_back(k);
+            if (std::isfinite(full[k]) && full[k] != 0 && (full[k] < 0) == is_negative) order.push_back(k);
         std::ranges::sort(order, {}, [&](size_t k) { return std::abs(full[k]); });
         if (is_negative != (percent < 0)) order.resize(std::min<size_t>(order.size(), 1));
     }
