@@ -43,6 +43,7 @@ struct ConvertOptions {
     std::optional<std::string> subdivision;
     std::optional<int> subdivision_level;
     std::optional<float> weld; ///< of the mesh, also of that of a map
+    std::optional<UpAxis> up;
     ProgressOptions progress;
 };
 
@@ -171,6 +172,7 @@ Scene load_surface(const ConvertOptions& options) {
     scene.displacement_map = options.displacement_map;
     scene.map = options.from;
     scene.subdivision = options.subdivision, scene.weld = options.weld;
+    scene.up = options.up.value_or(UpAxis::y);
     // Without a view no level can be chosen by it.
     if (options.subdivision) scene.subdivision_level = options.subdivision_level.value_or(kUsualSubdivision);
     return add_edge_warnings(load_mesh_scene(options.input, scene));
@@ -189,9 +191,10 @@ int convert_surface(const ConvertOptions& options) {
                    options.input, "a plain mesh is written as it is");
         WorkProgress progress(options.progress);
         std::vector<std::string> warnings;
-        const Mesh mesh = read_with_notice(options.progress, options.input, [&] {
+        Mesh mesh = read_with_notice(options.progress, options.input, [&] {
             return load_mesh(options.input, {.reader = make_mesh_reader()}, warnings);
         });
+        turn_upright(mesh, options.up.value_or(UpAxis::y));
         progress.tell(kBeforeConversion);
         print_warnings(options, warnings, &progress);
         write_mesh(mesh, options.output, progress.part(kBeforeConversion, 1));
@@ -199,7 +202,7 @@ int convert_surface(const ConvertOptions& options) {
         return kExitDone;
     }
     if (!is_mesh && (!options.displacement_map.empty() || !options.from_given.empty() ||
-                     options.subdivision || options.weld))
+                     options.subdivision || options.weld || options.up))
         refuse("a scene file says itself what its meshes and maps are", options.input, "");
     WorkProgress progress(options.progress);
     const Scene scene =
@@ -231,6 +234,7 @@ int run_convert(const ConvertOptions& options) {
             refuse("--vdm goes with a mesh", options.input, "name the mesh by --mesh");
         if (options.weld && options.mesh.empty())
             refuse("--weld needs a mesh", options.input, "name the mesh by --mesh");
+        if (options.up) refuse("--up goes with a mesh or its surface", options.input, "");
         return convert_map_file(options);
     }
     if (!options.mesh.empty() || options.samples)
@@ -267,6 +271,8 @@ void add_surface_options(CLI::App& verb, ConvertOptions& options) {
         });
     add("--weld", "EPS", "distance at which open edges are joined (default: rounding errors; 0: never)",
         [&](const std::string& text) { options.weld = parse_weld(text); });
+    add("--up", "AXIS", "axis of the mesh that points up, and becomes y: x, y (default), z",
+        [&](const std::string& text) { options.up = parse_up_axis(text); });
 }
 
 void set_samples(ConvertOptions& options, const std::string& text) {

@@ -169,6 +169,7 @@ Inspection inspect_plain_mesh(const InspectOptions& options, WorkProgress& progr
     Mesh mesh = read_with_notice(options.progress, options.file, [&] {
         return load_mesh(options.file, {.reader = make_mesh_reader()}, warnings);
     });
+    turn_upright(mesh, options.scene.up);
     progress.tell(kRead);
     Inspection inspection = inspect_read_mesh(mesh, warnings);
     progress.tell(get_picture_start(options));
@@ -226,7 +227,8 @@ Inspection inspect_file(const InspectOptions& options) {
     case FileKind::map:
         return inspect_map_file(options, progress);
     case FileKind::mesh:
-        if (options.mesh_only.empty()) return inspect_plain_mesh(options, progress);
+        if (std::ranges::all_of(options.mesh_only, [](const std::string& name) { return name == "--up"; }))
+            return inspect_plain_mesh(options, progress);
         return inspect_mesh_as_rendered(options, progress);
     case FileKind::scene:
         break;

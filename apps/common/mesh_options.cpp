@@ -14,6 +14,12 @@ namespace relief::cli {
 
 float parse_weld(const std::string& text) { return float(parse_number("--weld", text, 0, 1e18)); }
 
+UpAxis parse_up_axis(const std::string& text) {
+    constexpr std::array<std::pair<std::string_view, UpAxis>, 3> kAxes = {
+        {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}}};
+    return parse_word("--up", text, kAxes);
+}
+
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,
                       std::vector<std::string>& given) {
     const auto add = [&](const char* name, const char* value, const char* help,
@@ -53,6 +59,8 @@ void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions
         [&options](const std::string& text) { options.subdivision_level = parse_subdivision_level(text); });
     add("--weld", "EPS", "distance at which open edges are joined (default: rounding errors; 0: never)",
         [&options](const std::string& text) { options.weld = parse_weld(text); });
+    add("--up", "AXIS", "axis of the mesh that points up, and becomes y: x, y (default), z",
+        [&options](const std::string& text) { options.up = parse_up_axis(text); });
     add("--filter", "NAME", "of the map: cubic or bspline up close, mip from afar, none (default)",
         [&options](const std::string& text) { options.map.filter = text; });
     add_flag("--dequantize", "smooth the steps of 8 and 16-bit maps; filter cubic or bspline",

@@ -12,7 +12,10 @@ namespace relief::cli {
 /// The value of --weld. Throws Error{usage}.
 float parse_weld(const std::string& text);
 
-/// Adds --vdm, --subdivision, --subdivision-level, --weld, --filter, --dequantize, --autobump and
+/// The value of --up. Throws Error{usage}.
+UpAxis parse_up_axis(const std::string& text);
+
+/// Adds --vdm, --subdivision, --subdivision-level, --weld, --up, --filter, --dequantize, --autobump and
 /// --no-dilate, and sets the reader to that of make_mesh_reader(). Given options are appended to `given`; all
 /// arguments must outlive parsing.
 void add_mesh_options(CLI::App& verb, const std::string& group, MeshSceneOptions& options,

@@ -111,12 +111,16 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& file,
 std::string find_tile_pattern(const std::filesystem::path& file);
 
 /// How to render a mesh without a scene file.
+/// An axis of a mesh file that points up, where y does in a scene.
+enum class UpAxis { x, y, z };
+
 struct MeshSceneOptions {
     std::filesystem::path displacement_map; ///< empty: none; may hold `<UDIM>`
     MapOptions map;
     std::optional<std::string> subdivision; ///< scheme: none, bilinear or catmark
     std::optional<int> subdivision_level;   ///< [0, kMaxSubdivisionLevel], or kAutoSubdivisionLevel (default)
     std::optional<float> weld;              ///< see Mesh::weld
+    UpAxis up = UpAxis::y;                  ///< the object is turned so that it becomes y
     std::filesystem::path environment;      ///< empty: a studio, see load_mesh_scene
     MeshReaderSettings reader;
 };
@@ -167,6 +171,9 @@ Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options
 /// name of the file.
 Mesh load_mesh(const std::filesystem::path& file, const MeshReadOptions& options,
                std::vector<std::string>& warnings);
+
+/// Turns positions, normals and tangents so that `up` becomes y.
+void turn_upright(Mesh& mesh, UpAxis up);
 
 /// Writes scene.json, meshes (OBJ) and maps (EXR) into a folder; load_scene restores the same scene. Throws
 /// Error{bad_input} for a map in the mesh's own tangent frames, since OBJ has no tangents.

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "io/mesh/up_axis.h"
 #include "io/scene/asset_cache.h"
 #include "io/scene/displacement_reader.h"
 #include "io/scene/frame_scene.h"
 #include "io/scene/place_sky.h"
 #include "io/scene/scene_content.h"
 #include "io/scene/studio.h"
+#include "math/affine.h"
 #include "math/vec.h"
 #include "relief/error.h"
 #include "relief/io.h"
@@ -101,6 +103,8 @@ Scene load_mesh_scene(const std::filesystem::path& mesh, const MeshSceneOptions&
     if (options.subdivision) subdivision.scheme = parse_word<SubdivisionScheme>(*options.subdivision);
     if (options.subdivision_level) subdivision.level = *options.subdivision_level;
     scene.meshes.front().weld = options.weld;
+    if (options.up != UpAxis::y)
+        scene.objects.front().world_from_object = make_rotation_degrees(get_upright_turn(options.up));
     if (!options.displacement_map.empty()) add_map(scene, options, assets);
     const Vec3f view = place_camera(scene);
     if (options.environment.empty()) {

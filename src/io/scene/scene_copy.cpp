@@ -9,6 +9,7 @@
 
 #include "io/file_system.h"
 #include "io/mesh/mesh_writer.h"
+#include "io/mesh/up_axis.h"
 #include "io/picture/image_coders.h"
 #include "io/scene/keyed_values.h"
 #include "io/scene/scene_values.h"
@@ -92,6 +93,8 @@ Json write_mesh_scene(const Scene& scene, const MeshSceneOptions& options, const
         object["displacement"] = "map";
     }
     object["material"] = clay.name;
+    if (options.up != UpAxis::y)
+        object["transform"]["rotate_degrees"] = to_json(get_upright_turn(options.up));
     root["meshes"]["mesh"]["file"] = move(scene.meshes.front().source);
     if (options.subdivision) {
         Json& subdivision = root["meshes"]["mesh"]["subdivision"];

@@ -1,0 +1,12 @@
+// Turns that bring an axis of a mesh file up.
+#pragma once
+
+#include "math/vec.h"
+#include "relief/io.h"
+
+namespace relief {
+
+/// As `rotate_degrees` of a transform.
+Vec3f get_upright_turn(UpAxis up);
+
+} // namespace relief
