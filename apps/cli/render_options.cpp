@@ -362,9 +362,10 @@ void add_render_options(CLI::App& verb, RenderOptions& o) {
          {"--seed", "--edits", "--pixel", "--pixel-error", "--bottom-cache", "--surface", "--lod",
           "--bounce-levels", "--leaf", "--bottom", "--isa", "--method", "--structure", "--traversal"})
         verb.get_option(name)->group(kResearchGroup);
-    for (const char* name : {"--filter", "--dequantize", "--frame-all", "--weld", "--autobump", "--no-dilate",
-                             "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
-                             "--color-space", "--skip-existing", "--tile", "--samples", "--progress"})
+    for (const char* name :
+         {"--filter", "--dequantize", "--frame-all", "--weld", "--subdivision-level", "--autobump",
+          "--no-dilate", "--type", "--frame", "--lengths", "--encoding", "--wrap", "--png-bits",
+          "--color-space", "--skip-existing", "--tile", "--samples", "--progress"})
         verb.get_option(name)->group(kMapDetailGroup);
 }
 
