@@ -110,10 +110,10 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& file,
 /// matches all of them ("head.`<UDIM>`.exr"). Else empty.
 std::string find_tile_pattern(const std::filesystem::path& file);
 
-/// How to render a mesh without a scene file.
 /// An axis of a mesh file that points up, where y does in a scene.
 enum class UpAxis { x, y, z };
 
+/// How to render a mesh without a scene file.
 struct MeshSceneOptions {
     std::filesystem::path displacement_map; ///< empty: none; may hold `<UDIM>`
     MapOptions map;
