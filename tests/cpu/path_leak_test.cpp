@@ -20,8 +20,8 @@ constexpr int kSize = 64;
 /// vertices.
 constexpr uint64_t kRaysAPath = 10;
 
-/// Of so many rays at most one may start beyond the neighbour of its triangle, in a crease narrower than the
-/// error of its position: docs/results/leaks.md. More than the rays of a usual run, which must all hit.
+/// At most one in so many rays may start beyond the neighbour of its triangle, in a crease narrower than the
+/// error of its position: docs/results/leaks.md. A usual run has fewer rays, which must all hit.
 constexpr uint64_t kRaysAnOutsider = 50000000;
 
 Material make_coated() {

@@ -16,7 +16,7 @@ class FbxScene {
   public:
     explicit FbxScene(int side = 1) : text_(make_grid_fbx(side)) {}
 
-    /// Of a record that `begin` begins, as "Model: 20,".
+    /// Adds records to the one whose text begins with `begin`, such as "Model: 20,".
     FbxScene& add(const std::string& begin, const std::string& records) {
         const size_t line = text_.find('\n', text_.find(begin));
         text_.insert(line + 1, records);

@@ -180,7 +180,7 @@ inline constexpr uint32_t kMostDirectorySteps = DirectoryPlace::step_count(kMaxL
 struct TileDirectory : CachedTree {
     Node16 node;
 
-    /// Which of the four tiles below a directory of the last step child `child` is a quarter of.
+    /// Returns which of the four tiles below a directory of the last step has child `child` as a quarter.
     static constexpr uint32_t find_tile_of_node(uint32_t child) {
         return (child >> 2 & 2) | (child >> 1 & 1);
     }

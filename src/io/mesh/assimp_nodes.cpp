@@ -41,7 +41,7 @@ aiMatrix4x4 remove_scale(const aiMatrix4x4& matrix, const aiVector3D& scale) {
     return matrix * make_scaling({invert(scale.x), invert(scale.y), invert(scale.z)});
 }
 
-/// Of a node of the file, all that its children inherit.
+/// All that the children of a node inherit from it.
 struct State {
     aiMatrix4x4 world_from_node, world_from_unscaled;
     aiVector3D scale{1, 1, 1};           ///< with that of nodes above which it has taken over

@@ -15,7 +15,7 @@ namespace relief {
 /// World from node, by the names that prepare_fbx() gave to the nodes.
 using NodePlaces = std::map<std::string, aiMatrix4x4, std::less<>>;
 
-/// Where a node holds its meshes.
+/// The place at which a node holds its meshes.
 struct MeshPlace {
     aiMatrix4x4 world_from_mesh;
     aiMatrix4x4 node_from_mesh; ///< the geometric transform

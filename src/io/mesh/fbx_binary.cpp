@@ -74,7 +74,7 @@ class FbxBinaryParser {
         return value;
     }
 
-    /// Until a record of zeros, or `end`.
+    /// Reads records up to one of zeros, or to `end`.
     bool read_records(FbxRecord& parent, uint64_t end, int depth) {
         const size_t width = is_wide_ ? 8 : 4;
         if (depth > kMostFbxNesting) return false;

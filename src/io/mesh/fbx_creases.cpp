@@ -53,7 +53,7 @@ class CreaseReader {
     /// The last corner of a polygon is marked: its bits are turned over.
     static int64_t get_point(int64_t corner) { return corner < 0 ? ~corner : corner; }
 
-    /// Of each corner the next one around its polygon.
+    /// Finds for each corner the next one around its polygon.
     static std::vector<int64_t> find_nexts(const std::vector<int64_t>& corners) {
         std::vector<int64_t> nexts(corners.size());
         int64_t first = 0;

@@ -7,7 +7,7 @@
 
 namespace relief {
 
-/// Of a record `Geometry`. Values that do not fit the mesh are left out.
+/// Reads the creases of a record `Geometry`. Values that do not fit the mesh are left out.
 std::vector<FbxCrease> read_fbx_creases(const FbxDocument& document, const FbxRecord& geometry);
 
 } // namespace relief

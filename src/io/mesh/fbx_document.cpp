@@ -46,12 +46,12 @@ template <class Visit> void visit_words(std::string_view list, const Visit& visi
     }
 }
 
-/// What the importer throws at no number; its own exception is not part of its library.
+/// The importer's function throws this where there is no number; its own exception is not in its library.
 struct NoNumber {
     template <class... Words> explicit NoNumber(const Words&...) {}
 };
 
-/// As the importer rounds it: the numbers of both must be equal.
+/// Rounds a number as the importer does: the numbers of both must be equal.
 float narrow(std::string_view word) {
     constexpr size_t kMostDigits = 31;
     const std::string digits(word.substr(0, kMostDigits));

@@ -33,10 +33,11 @@ class FbxDocument {
     FbxRecord& root() { return root_; }
     const FbxRecord& root() const { return root_; }
 
-    /// As `FBXVersion` or the head of a binary file has it: 7400 for 7.4.
+    /// Returns the version that `FBXVersion` or the head of a binary file states: 7400 for 7.4.
     uint32_t get_version() const;
 
-    /// A text without quotes; a name without its class, as 'Cube' of "Model::Cube". Empty for others.
+    /// Return a text without quotes, or a name without its class, such as 'Cube' of "Model::Cube". Other
+    /// values give an empty text.
     std::string_view read_text(std::string_view value) const;
     std::string_view read_name(std::string_view value) const;
     std::optional<double> read_number(std::string_view value) const;

@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// Between two points of a mesh; of one point where both are equal.
+/// A crease between two points of a mesh, or at one point where both are equal.
 struct FbxCrease {
     Vec3f first, second; ///< in the space of the mesh, not bent
     float sharpness = 0; ///< as Crease::sharpness
@@ -33,12 +33,12 @@ struct FbxNode {
 
 struct FbxFacts {
     std::vector<FbxNode> nodes;
-    /// Of each channel of blend shapes, one a shape.
+    /// For each channel of blend shapes the weights of its shapes.
     std::vector<std::vector<float>> channel_weights;
     std::vector<std::string> surfaces; ///< names of nodes whose surface is none of polygons
     std::vector<std::string> warnings;
 
-    /// By the name that prepare_fbx() gave to it. Null for other names.
+    /// Find a node or a channel by the name that prepare_fbx() gave to it. They return null for other names.
     const FbxNode* find_node(std::string_view name) const;
     const std::vector<float>* find_channel(std::string_view name) const;
 };

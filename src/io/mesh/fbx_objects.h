@@ -24,10 +24,10 @@ class FbxObjects {
   public:
     explicit FbxObjects(FbxDocument& document);
 
-    /// Those of records with this name, in the order of the file.
+    /// Lists the objects of records with this name, in the order of the file.
     const std::vector<FbxObject>& list(std::string_view record) const;
 
-    /// Of those that `list(record)` has, in the order of their connections.
+    /// List objects that `list(record)` has and that are connected, in the order of their connections.
     std::vector<const FbxObject*> list_sources(std::string_view record, int64_t destination) const;
     std::vector<const FbxObject*> list_destinations(std::string_view record, int64_t source) const;
 

@@ -22,7 +22,7 @@ void refuse_old_version(uint32_t version, const std::filesystem::path& file) {
                                        file.string(), "export it as FBX 2020 (7.x), binary"});
 }
 
-/// As the head of the file has it, where its records cannot be followed. 0 where it has none.
+/// Returns the version that the head of a file states whose records cannot be followed, or 0.
 uint32_t find_version(std::string_view bytes) {
     constexpr size_t kHead = 4096, kPlace = 23;
     if (bytes.starts_with(kFbxMagic)) {

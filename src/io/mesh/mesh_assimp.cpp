@@ -75,7 +75,7 @@ class AssimpBuilder {
         return std::move(mesh_);
     }
 
-    /// What of the file does not show in the mesh.
+    /// Warns of parts of the file that do not show in the mesh.
     void add_warnings(std::vector<std::string>& warnings) const {
         if (!hidden_.empty())
             warnings.push_back(fmt::format("{}: hidden nodes with meshes are left out, {} of them: {}; show "

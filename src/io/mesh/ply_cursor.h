@@ -12,8 +12,8 @@ namespace relief {
 
 inline constexpr const char* kDamagedPlyHint = "the file is damaged or incomplete: export it again";
 
-/// Of text files. `by_lines`: every element is on a line of its own, and further numbers at its end are left
-/// out.
+/// How text files are read. With `by_lines` every element is on a line of its own, and further numbers at its
+/// end are left out.
 enum class PlyLines { ignored, by_lines };
 
 /// Knows its place for messages. Refers to the bytes and the name, which must outlive it.

@@ -6,7 +6,7 @@
 
 namespace relief {
 
-/// As `rotate_degrees` of a transform.
+/// Returns the angles by which `rotate_degrees` of a transform turns this axis to y.
 Vec3f get_upright_turn(UpAxis up);
 
 } // namespace relief

@@ -41,7 +41,7 @@ struct CornerShares {
     std::array<double, 4> more{};
 };
 
-/// Of the point at `at` of the face's square, or of its part.
+/// Finds the shares in the point at `at` of the face's square, or of its part.
 CornerShares find_shares(const Face& face, uint32_t part, const Vec2<double>& at) {
     const std::array<double, 4> of_square = {(1 - at.x) * (1 - at.y), at.x * (1 - at.y), at.x * at.y,
                                              (1 - at.x) * at.y};

@@ -245,7 +245,7 @@ class EdgeJoiner {
     std::vector<bool> apart_;                      ///< by set
 };
 
-/// Of the points that faces have.
+/// Measures of the points that faces have.
 struct Measures {
     Box box;
     float largest = 0; ///< coordinate, as an absolute value

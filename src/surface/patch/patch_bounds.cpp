@@ -293,7 +293,7 @@ Box compute_plain_box(const Surface& surface, uint32_t patch) {
     return box;
 }
 
-/// Of a displaced patch.
+/// Bounds cells of a displaced patch.
 Box bound_cells(const DisplacementMap& map, const PatchSamples& samples, const PatchBase& own,
                 const PatchLevels& levels, const Cells& cells_i0_j0_i1_j1) {
     const auto [i0, j0, i1, j1] = cells_i0_j0_i1_j1;
