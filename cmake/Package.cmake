@@ -42,7 +42,7 @@ set(relief_packages relief_library)
 
 if(RELIEF_IO)
   relief_package(relief_io_library relief_io MODULES relief_io
-                 LIBRARIES fmt::fmt OpenEXR::OpenEXR PNG::PNG TIFF::TIFF JPEG::JPEG assimp::assimp
+                 LIBRARIES fmt::fmt OpenEXR::OpenEXR PNG::PNG TIFF::TIFF JPEG::JPEG ZLIB::ZLIB assimp::assimp
                            ${RELIEF_MESH_LIBRARIES} ${CMAKE_DL_LIBS})
   target_link_libraries(relief_io_library PUBLIC relief_library)
   if(TARGET relief_pictures)
