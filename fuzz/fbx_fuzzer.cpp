@@ -1,5 +1,5 @@
-// Bytes of an FBX file must end in records that are written as a file with the same records, or in an Error. The
-// importer that takes this file is not run.
+// Bytes of an FBX file must end in records that are written as a file with the same records, or in an Error.
+// The importer that takes this file is not run.
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
