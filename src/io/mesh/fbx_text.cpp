@@ -18,6 +18,9 @@ class FbxTextParser {
     static bool ends_word(char c) {
         return is_space(c) || c == ',' || c == '{' || c == '}' || c == ';' || c == '"';
     }
+    static bool begins_value(char c) {
+        return std::string_view("-\"0123456789").find(c) != std::string_view::npos;
+    }
     bool is_at(char c) const { return at_ < text_.size() && text_[at_] == c; }
 
     void skip_blanks() {
@@ -42,7 +45,7 @@ class FbxTextParser {
             FbxRecord record;
             record.name = text_.substr(begin, at_ - begin);
             skip_blanks();
-            if (!is_at(':') || record.name.empty()) return false;
+            if (!is_at(':') || record.name.empty() || begins_value(record.name[0])) return false;
             ++at_;
             if (record.name == "a" && depth > 0) {
                 read_list(record);
@@ -96,9 +99,7 @@ class FbxTextParser {
     void skip_to_first_value() {
         const size_t end = at_;
         while (at_ < text_.size() && is_space(text_[at_])) ++at_;
-        const bool is_value = at_ < text_.size() &&
-                              std::string_view("-\"0123456789").find(text_[at_]) != std::string_view::npos;
-        if (!is_value) at_ = end;
+        if (at_ == text_.size() || !begins_value(text_[at_])) at_ = end;
     }
 
     /// Old versions begin lines with the comma.
