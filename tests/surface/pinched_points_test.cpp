@@ -3,6 +3,7 @@
 
 #include "surface/mesh/join_points.h"
 #include "surface/mesh/pinched_points.h"
+#include "surface/smooth_shapes.h"
 #include "surface/test_scenes.h"
 
 namespace relief {
