@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/vectors.h"
+#include "viewer/brush.h"
 #include "viewer/picture_layers.h"
 
 namespace relief::viewer {
