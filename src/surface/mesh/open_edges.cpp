@@ -5,35 +5,17 @@
 
 namespace relief {
 
-namespace {
-
-/// Calls `visit(face, corner, first point, second point)` for each edge of each face.
-template <class Visit>
-void visit_edges(std::span<const uint32_t> face_sizes, std::span<const uint32_t> points, const Visit& visit) {
-    uint32_t begin = 0;
-    for (uint32_t face = 0; face < face_sizes.size(); ++face) {
-        const uint32_t size = face_sizes[face];
-        for (uint32_t k = 0; k < size; ++k) {
-            const uint32_t first = points[begin + k], second = points[begin + (k + 1 == size ? 0 : k + 1)];
-            if (first != second) visit(face, begin + k, first, second);
-        }
-        begin += size;
-    }
-}
-
-} // namespace
-
 std::vector<OpenEdge> list_open_edges(std::span<const uint32_t> face_sizes, std::span<const uint32_t> points,
                                       size_t point_count) {
     using Edge = std::pair<uint32_t, uint32_t>; // its larger point and the corner
     std::vector<uint32_t> ends(point_count + 1);
-    visit_edges(face_sizes, points, [&](uint32_t, uint32_t, uint32_t first, uint32_t second) {
+    visit_face_edges(face_sizes, points, [&](uint32_t, uint32_t, uint32_t first, uint32_t second) {
         ++ends[std::min(first, second)];
     });
     uint32_t sum = 0;
     for (uint32_t& end : ends) sum = end = end + sum;
     std::vector<Edge> edges(sum);
-    visit_edges(face_sizes, points, [&](uint32_t, uint32_t corner, uint32_t first, uint32_t second) {
+    visit_face_edges(face_sizes, points, [&](uint32_t, uint32_t corner, uint32_t first, uint32_t second) {
         edges[--ends[std::min(first, second)]] = {std::max(first, second), corner};
     });
     std::vector<bool> is_open(points.size());
@@ -47,9 +29,10 @@ std::vector<OpenEdge> list_open_edges(std::span<const uint32_t> face_sizes, std:
         }
     }
     std::vector<OpenEdge> result;
-    visit_edges(face_sizes, points, [&](uint32_t face, uint32_t corner, uint32_t first, uint32_t second) {
-        if (is_open[corner]) result.push_back({first, second, face, corner});
-    });
+    visit_face_edges(face_sizes, points,
+                     [&](uint32_t face, uint32_t corner, uint32_t first, uint32_t second) {
+                         if (is_open[corner]) result.push_back({first, second, face, corner});
+                     });
     return result;
 }
 

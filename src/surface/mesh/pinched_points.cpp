@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "surface/mesh/open_edges.h"
 #include "surface/mesh/point_sets.h"
 
 namespace relief {
@@ -29,25 +30,16 @@ std::vector<bool> mark_shared(const std::vector<uint32_t>& representatives) {
     return is_shared;
 }
 
-/// Calls `visit(first, second)` with the points of each edge of each face.
-template <class Visit> void visit_edges(const Mesh& mesh, const Visit& visit) {
-    size_t begin = 0;
-    for (const uint32_t size : mesh.face_sizes) {
-        for (uint32_t k = 0; k < size; ++k)
-            visit(mesh.position_indices[begin + k], mesh.position_indices[begin + (k + 1) % size]);
-        begin += size;
-    }
-}
-
 /// Edges at representatives that stand for other points too.
 std::vector<JoinedEdge> list_edges(const Mesh& mesh, const std::vector<uint32_t>& representatives) {
     const std::vector<bool> is_shared = mark_shared(representatives);
     std::vector<JoinedEdge> edges;
-    visit_edges(mesh, [&](uint32_t first, uint32_t second) {
-        if (representatives[first] > representatives[second]) std::swap(first, second);
-        const uint32_t low = representatives[first], high = representatives[second];
-        if (is_shared[low] || is_shared[high]) edges.push_back({low, high, first, second});
-    });
+    visit_face_edges(mesh.face_sizes, mesh.position_indices,
+                     [&](uint32_t, uint32_t, uint32_t first, uint32_t second) {
+                         if (representatives[first] > representatives[second]) std::swap(first, second);
+                         const uint32_t low = representatives[first], high = representatives[second];
+                         if (is_shared[low] || is_shared[high]) edges.push_back({low, high, first, second});
+                     });
     std::sort(edges.begin(), edges.end());
     return edges;
 }
