@@ -15,7 +15,6 @@ using namespace vectors;
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kUvRounding = 1e-5; ///< files with few digits have errors of this size
 
 /// Samples that may be visited for each sample of the grid and for each corner of the mesh: several times
 /// what a mesh without overlaps needs.

@@ -17,9 +17,6 @@ namespace {
 /// Lines begin there, in distances of the camera's target.
 constexpr float kNearPlane = 1e-3f;
 
-/// Uvs reach into a tile where they do so by more than the rounding of files with few digits.
-constexpr float kUvRounding = 1e-5f;
-
 /// The faces of an object around a uv that a picture shows. Such uvs are relative to a tile that their face
 /// reaches into.
 class FaceSearch {

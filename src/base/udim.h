@@ -9,6 +9,10 @@ namespace relief {
 inline constexpr int kFirstUdim = 1001, kLastUdim = 9999; ///< four digits
 inline constexpr int kUdimColumns = 10, kUdimRows = 900;  ///< the last row ends one column early
 
+/// Uvs of files with few digits have errors of this size: a face reaches into a tile only if it does so by
+/// more.
+inline constexpr double kUvRounding = 1e-5;
+
 /// The UDIM number of the tile that a uv is in; nothing where u is outside of [0, 10), v is negative, or the
 /// number has more than four digits.
 inline std::optional<int> find_udim(double u, double v) {

@@ -18,8 +18,6 @@ namespace relief {
 
 namespace {
 
-constexpr double kUvRounding = 1e-5; ///< that files with few digits bring with them
-
 /// First and last square of an axis between two coordinates.
 std::pair<double, double> find_squares(double low, double high, double middle) {
     const double first = std::floor(low + kUvRounding), last = std::ceil(high - kUvRounding) - 1;

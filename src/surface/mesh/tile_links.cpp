@@ -14,8 +14,6 @@ namespace relief {
 
 namespace {
 
-constexpr double kNearBorder = 1e-5; ///< uvs on a border are at most so far from it
-
 /// Collects links while it walks through the faces of a mesh.
 class LinkFinder {
   public:
@@ -81,7 +79,7 @@ class LinkFinder {
         const Vec2f &a = uvs[k], &b = uvs[next];
         const auto is_along = [](double from, double to) {
             const double line = std::round(from);
-            return std::fabs(from - line) <= kNearBorder && std::fabs(to - line) <= kNearBorder;
+            return std::fabs(from - line) <= kUvRounding && std::fabs(to - line) <= kUvRounding;
         };
         const bool is_column = is_along(a.x, b.x);
         if (!is_column && !is_along(a.y, b.y)) return;
