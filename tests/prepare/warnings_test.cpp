@@ -120,7 +120,7 @@ TEST(Warnings, count_the_faces_without_uvs_in_a_set_that_a_texture_names) {
         << warnings[0];
 }
 
-/// A torus whose faces all lie in tile 1001, but for two: one in 1002, one outside of all tiles.
+/// A torus with one face in tile 1002, one outside of all tiles, and the rest in tile 1001.
 Scene make_scene_with_texture_tiles() {
     Scene scene = test::make_body_scene(test::make_torus(4, 6), {});
     scene.displacements.clear(), scene.objects[0].displacement = kNoIndex;

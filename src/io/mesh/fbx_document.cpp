@@ -46,7 +46,7 @@ template <class Visit> void visit_words(std::string_view list, const Visit& visi
     }
 }
 
-/// The importer's function throws this where there is no number; its own exception is not in its library.
+/// Assimp's number parser takes the exception to throw as a parameter. Its usual one is not exported.
 struct NoNumber {
     template <class... Words> explicit NoNumber(const Words&...) {}
 };

@@ -27,7 +27,7 @@ struct FbxRecord {
 /// Refers to the bytes it was parsed from, which must outlive it.
 class FbxDocument {
   public:
-    /// Nothing where the records cannot be followed to their end.
+    /// Returns nothing if the records cannot be followed to their end.
     static std::optional<FbxDocument> parse(std::string_view bytes);
 
     FbxRecord& root() { return root_; }

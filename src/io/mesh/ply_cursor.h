@@ -35,7 +35,7 @@ class PlyCursor {
         if (lines_ == PlyLines::by_lines) begin_line();
     }
 
-    /// Behind the last element that is read.
+    /// Ends the reading: to be called after the last element.
     void finish() {
         if (format_ == PlyFormat::ascii && element_) leave_element();
     }

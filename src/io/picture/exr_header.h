@@ -25,9 +25,9 @@ bool is_exr_cube(std::istream& stream);
 /// Tag of colours whose primaries or white are not those of Rec.709.
 inline constexpr const char* kOtherPrimariesTag = "attribute chromaticities, which are not those of Rec.709";
 
-/// Returns what the header of an EXR stream says of colours: "attribute chromaticities", kOtherPrimariesTag,
-/// or kRenderedTag for a picture that Relief rendered. Returns an empty text if it says nothing, or if this
-/// is no EXR.
+/// Returns the entry of an EXR header that marks its values as colours: "attribute chromaticities",
+/// kOtherPrimariesTag, or kRenderedTag for a picture that Relief rendered. Returns an empty text if the
+/// header has no such entry, or if the stream is no EXR file.
 std::string find_exr_color_tag(std::istream& stream);
 
 } // namespace relief
