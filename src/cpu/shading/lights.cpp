@@ -1,6 +1,7 @@
 #include "cpu/shading/lights.h"
 #include "cpu/shading/input_look_up.h"
 #include "cpu/shading/kinds.h"
+#include "cpu/shading/shading_kernels.h"
 #include "formulas/constants.h"
 #include "formulas/glass.h"
 #include "formulas/light.h"

@@ -139,12 +139,6 @@ void check_attributes(std::istream& stream, const std::string& name, uint64_t fi
     stream.seekg(0);
 }
 
-#ifdef RELIEF_PICTURES
-constexpr bool kHasPictureLibrary = true;
-#else
-constexpr bool kHasPictureLibrary = false;
-#endif
-
 /// A picture in a file or in memory.
 struct Bytes {
     std::string name;
@@ -176,13 +170,12 @@ void check_bytes(const Bytes& bytes) {
     check_attributes(*stream, bytes.name, bytes.count);
 }
 
-/// Opens kinds beside EXR: the library of pictures gets PNG and JPEG files that the own readers do not know.
-/// It never gets TIFF files: hostile ones end the process in it.
+/// Opens kinds beside EXR. The library of pictures gets the JPEG files that the reader of these does not know
+/// (CMYK), and never TIFF and PNG files: hostile ones end the process in it.
 std::unique_ptr<PixelSource> open_other(const Bytes& bytes, PictureRemarks& remarks) {
     for (const auto& open : {open_hdr, open_tiff, open_jpeg})
         if (std::unique_ptr<PixelSource> source = open(bytes.open(), bytes.name, remarks)) return source;
-    std::unique_ptr<PixelSource> source;
-    if (!kHasPictureLibrary) source = open_png(bytes.open(), bytes.name);
+    std::unique_ptr<PixelSource> source = open_png(bytes.open(), bytes.name);
     return source ? std::move(source) : bytes.open_by_library();
 }
 

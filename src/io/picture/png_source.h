@@ -1,4 +1,4 @@
-// PNG files read by libpng, for builds without the module relief_pictures.
+// PNG files read by libpng.
 #pragma once
 
 #include <istream>
