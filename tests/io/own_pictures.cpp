@@ -1,10 +1,14 @@
 // HDR, TIFF and JPEG files read by the library itself, as OpenImageIO reads them; orientations and windows.
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
+#include <jpeglib.h>
+#include <zlib.h>
 
 #include "io/file_system.h"
 #include "io/picture/exif_orientation.h"
@@ -159,6 +163,76 @@ TEST_F(OwnPictures, jpeg_is_read_as_by_the_module) {
                                                   spec.attribute("jpeg:subsampling", "4:2:0");
                                               }));
     }
+}
+
+namespace {
+
+/// One colour in CMYK; `is_of_adobe` says whether the marker of Adobe's programs stands in the file.
+std::string make_cmyk_jpeg(const std::array<uint8_t, 4>& inks, bool is_of_adobe) {
+    jpeg_compress_struct info;
+    jpeg_error_mgr errors;
+    info.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&info);
+    unsigned char* bytes = nullptr;
+    unsigned long count = 0;
+    jpeg_mem_dest(&info, &bytes, &count);
+    info.image_width = info.image_height = 16;
+    info.input_components = 4, info.in_color_space = JCS_CMYK;
+    jpeg_set_defaults(&info);
+    jpeg_set_quality(&info, 100, TRUE);
+    info.write_Adobe_marker = is_of_adobe ? TRUE : FALSE;
+    jpeg_start_compress(&info, TRUE);
+    std::vector<uint8_t> row;
+    for (int x = 0; x < 16; ++x) row.insert(row.end(), inks.begin(), inks.end());
+    uint8_t* rows[] = {row.data()};
+    for (int y = 0; y < 16; ++y) jpeg_write_scanlines(&info, rows, 1);
+    jpeg_finish_compress(&info);
+    jpeg_destroy_compress(&info);
+    const std::string result(reinterpret_cast<const char*>(bytes), count);
+    std::free(bytes);
+    return result;
+}
+
+} // namespace
+
+TEST_F(OwnPictures, jpeg_of_four_inks_becomes_colours) {
+    for (const bool is_of_adobe : {false, true}) {
+        const std::filesystem::path file =
+            write("inks.jpg", make_cmyk_jpeg(is_of_adobe ? std::array<uint8_t, 4>{200, 100, 50, 128}
+                                                         : std::array<uint8_t, 4>{55, 155, 205, 127},
+                                             is_of_adobe));
+        const Texture texture = read_texture(file);
+        ASSERT_EQ(texture.channel_count, 3u);
+        PictureRemarks remarks;
+        const std::vector<float> values = read_all(*open_own(file, remarks));
+        const float light = 128.0f / 255 / 255;
+        EXPECT_NEAR(values[0], 200 * light, 0.01f);
+        EXPECT_NEAR(values[1], 100 * light, 0.01f);
+        EXPECT_NEAR(values[2], 50 * light, 0.01f);
+    }
+}
+
+TEST_F(OwnPictures, metadata_of_a_png_file_may_be_nested_as_deep_as_they_like) {
+    const std::string plain = read_file_bytes(write_picture("a.png", 3, OIIO::TypeDesc::UINT8));
+    std::string text = "XML:com.adobe.xmp";
+    text += std::string(5, '\0'); // not compressed, no language, no translation
+    for (int k = 0; k < 200000; ++k) text += "<a>";
+    const std::string content = "iTXt" + text;
+    std::string chunk;
+    const auto add_number = [&](size_t number) {
+        for (int shift = 24; shift >= 0; shift -= 8) chunk += char(number >> shift & 0xff);
+    };
+    add_number(text.size());
+    chunk += content;
+    add_number(crc32(0, reinterpret_cast<const unsigned char*>(content.data()), unsigned(content.size())));
+    std::string nested = plain;
+    constexpr size_t kHeaderEnd = 8 + 25;
+    nested.insert(kHeaderEnd, chunk);
+    const Texture texture = read_texture(write("nested.png", nested));
+    EXPECT_EQ(texture.width, uint32_t(kColumns));
+    const Texture expected = read_texture(write("plain.png", plain));
+    EXPECT_EQ(texture.floats, expected.floats);
+    EXPECT_EQ(texture.halves, expected.halves);
 }
 
 TEST_F(OwnPictures, jpeg_that_is_damaged_is_warned_of) {

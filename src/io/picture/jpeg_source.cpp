@@ -110,8 +110,10 @@ class JpegSource final : public RowSource {
 
     void fill_header(PictureRemarks& remarks) {
         const bool is_grey = info_.jpeg_color_space == JCS_GRAYSCALE;
-        is_known_ = is_grey || info_.jpeg_color_space == JCS_YCbCr || info_.jpeg_color_space == JCS_RGB;
-        space_ = is_grey ? JCS_GRAYSCALE : JCS_RGB;
+        const bool is_cmyk = info_.jpeg_color_space == JCS_CMYK || info_.jpeg_color_space == JCS_YCCK;
+        is_known_ =
+            is_grey || is_cmyk || info_.jpeg_color_space == JCS_YCbCr || info_.jpeg_color_space == JCS_RGB;
+        space_ = is_grey ? JCS_GRAYSCALE : is_cmyk ? JCS_CMYK : JCS_RGB;
         header_.width = header_.full_width = int(info_.image_width);
         header_.height = header_.full_height = int(info_.image_height);
         header_.type = SampleType::uint8;
@@ -133,16 +135,28 @@ class JpegSource final : public RowSource {
             jpeg_start_decompress(&info_);
         });
         const size_t count = size_t(info_.output_width) * header_.channels.size();
-        std::vector<uint8_t> row(count);
+        std::vector<uint8_t> row(size_t(info_.output_width) * size_t(info_.output_components));
         std::vector<float> values(count);
         while (info_.output_scanline < info_.output_height) {
             const int y = int(info_.output_scanline);
             uint8_t* rows[] = {row.data()};
             run([&] { jpeg_read_scanlines(&info_, rows, 1); });
+            if (space_ == JCS_CMYK) remove_inks(row);
             for (size_t k = 0; k < count; ++k) values[k] = float(row[k]) * (1.0f / 255);
             visit(y, values.data());
         }
         run([&] { jpeg_finish_decompress(&info_); });
+    }
+
+    /// Four inks a pixel become three colours, in place and without a profile. Adobe's programs store how
+    /// much of the light each ink leaves, others how much it takes.
+    void remove_inks(std::vector<uint8_t>& row) const {
+        const auto find_light = [&](uint8_t ink) { return info_.saw_Adobe_marker ? ink : 255 - ink; };
+        for (size_t pixel = 0; pixel < row.size() / 4; ++pixel) {
+            const int black = find_light(row[4 * pixel + 3]);
+            for (size_t c = 0; c < 3; ++c)
+                row[3 * pixel + c] = uint8_t((find_light(row[4 * pixel + c]) * black + 127) / 255);
+        }
     }
 
     std::string name_;
