@@ -10,9 +10,8 @@
 
 namespace relief {
 
-/// Nothing where the stream is no JPEG file, or its samples are of no known kind. Colours and CMYK become R, G,
-/// B, grey a channel Y. The orientation of Exif is followed. Throws Error{bad_input} for a
-/// damaged file.
+/// Nothing where the stream is no JPEG file, or its samples are of no known kind. Colours and CMYK become R,
+/// G, B, grey a channel Y. The orientation of Exif is followed. Throws Error{bad_input} for a damaged file.
 std::unique_ptr<PixelSource> open_jpeg(std::unique_ptr<std::istream> stream, const std::string& name,
                                        PictureRemarks& remarks);
 
