@@ -212,25 +212,42 @@ TEST_F(OwnPictures, jpeg_of_four_inks_becomes_colours) {
     }
 }
 
-TEST_F(OwnPictures, metadata_of_a_png_file_may_be_nested_as_deep_as_they_like) {
-    const std::string plain = read_file_bytes(write_picture("a.png", 3, OIIO::TypeDesc::UINT8));
-    std::string text = "XML:com.adobe.xmp";
-    text += std::string(5, '\0'); // not compressed, no language, no translation
-    for (int k = 0; k < 200000; ++k) text += "<a>";
-    const std::string content = "iTXt" + text;
-    std::string chunk;
-    const auto add_number = [&](size_t number) {
-        for (int shift = 24; shift >= 0; shift -= 8) chunk += char(number >> shift & 0xff);
+namespace {
+
+/// A compressed text chunk of XMP whose elements are nested `depth` deep.
+std::string make_nested_metadata(int depth) {
+    std::string xmp = "<x:xmpmeta xmlns:x='adobe:ns:meta/'>"
+                      "<rdf:RDF xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#'><rdf:Description>";
+    for (int k = 0; k < depth; ++k) xmp += "<x:a>";
+    for (int k = 0; k < depth; ++k) xmp += "</x:a>";
+    xmp += "</rdf:Description></rdf:RDF></x:xmpmeta>";
+    uLongf size = compressBound(uLong(xmp.size()));
+    std::string packed(size, '\0');
+    EXPECT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+                       reinterpret_cast<const Bytef*>(xmp.data()), uLong(xmp.size())),
+              Z_OK);
+    const std::string keyword = "XML:com.adobe.xmp";
+    const std::string content = "zTXt" + keyword + std::string(2, '\0') + packed.substr(0, size);
+    const auto make_number = [](size_t number) {
+        std::string bytes;
+        for (int shift = 24; shift >= 0; shift -= 8) bytes += char(number >> shift & 0xff);
+        return bytes;
     };
-    add_number(text.size());
-    chunk += content;
-    add_number(crc32(0, reinterpret_cast<const unsigned char*>(content.data()), unsigned(content.size())));
-    std::string nested = plain;
+    const uLong check = crc32(0, reinterpret_cast<const Bytef*>(content.data()), uInt(content.size()));
+    return make_number(content.size() - 4) + content + make_number(check);
+}
+
+} // namespace
+
+TEST_F(OwnPictures, png_may_have_metadata_that_are_nested_deep) {
+    const std::string plain = read_file_bytes(write_picture("a.png", 3, OIIO::TypeDesc::UINT8));
     constexpr size_t kHeaderEnd = 8 + 25;
-    nested.insert(kHeaderEnd, chunk);
+    std::string nested = plain;
+    nested.insert(kHeaderEnd, make_nested_metadata(100000));
     const Texture texture = read_texture(write("nested.png", nested));
-    EXPECT_EQ(texture.width, uint32_t(kColumns));
     const Texture expected = read_texture(write("plain.png", plain));
+    ASSERT_EQ(texture.width, uint32_t(kColumns));
+    EXPECT_FALSE(expected.floats.empty() && expected.halves.empty());
     EXPECT_EQ(texture.floats, expected.floats);
     EXPECT_EQ(texture.halves, expected.halves);
 }
