@@ -195,6 +195,18 @@ std::string make_cmyk_jpeg(const std::array<uint8_t, 4>& inks, bool is_of_adobe)
 
 } // namespace
 
+TEST_F(OwnPictures, jpeg_of_unknown_components_is_refused) {
+    std::string bytes = read_file_bytes(write_picture("a.jpg", 1, OIIO::TypeDesc::UINT8));
+    const size_t frame = bytes.find("\xff\xc0"), scan = bytes.find("\xff\xda");
+    constexpr size_t kFrameEnd = 13, kComponentCount = 9; // with one component of three bytes
+    std::string second = bytes.substr(frame + kFrameEnd - 3, 3);
+    second[0] = '\x02';
+    bytes.insert(scan + 7, std::string{"\x02\x00", 2}), bytes[scan + 3] += 2, bytes[scan + 4] = 2;
+    bytes.insert(frame + kFrameEnd, second), bytes[frame + 3] += 3, bytes[frame + kComponentCount] = 2;
+    EXPECT_HAS(message_of([&] { read_texture(write("two.jpg", bytes)); }),
+               "two.jpg: has 2 components of no known colours");
+}
+
 TEST_F(OwnPictures, jpeg_of_four_inks_becomes_colours) {
     for (const bool is_of_adobe : {false, true}) {
         const std::filesystem::path file =

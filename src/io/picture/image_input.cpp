@@ -170,8 +170,8 @@ void check_bytes(const Bytes& bytes) {
     check_attributes(*stream, bytes.name, bytes.count);
 }
 
-/// Opens kinds beside EXR. The library of pictures gets what no reader of Relief knows, and never TIFF and
-/// PNG files: hostile ones end the process in it.
+/// Opens kinds beside EXR. The library of pictures gets only files that are of none of the four kinds below:
+/// hostile ones end the process in it.
 std::unique_ptr<PixelSource> open_other(const Bytes& bytes, PictureRemarks& remarks) {
     for (const auto& open : {open_hdr, open_tiff, open_jpeg})
         if (std::unique_ptr<PixelSource> source = open(bytes.open(), bytes.name, remarks)) return source;

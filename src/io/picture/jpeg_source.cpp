@@ -21,6 +21,7 @@
 #include "io/picture/picture_error.h"
 #include "io/picture/picture_text.h"
 #include "io/picture/row_source.h"
+#include "relief/error.h"
 
 namespace relief {
 
@@ -82,8 +83,6 @@ class JpegSource final : public RowSource {
     JpegSource(const JpegSource&) = delete;
     JpegSource& operator=(const JpegSource&) = delete;
 
-    bool is_known() const { return is_known_; }
-
     std::vector<std::string> list_warnings() const override {
         if (errors_.warning_count == 0) return {};
         return {fmt::format("{}: is damaged, and parts of the picture may be wrong: libjpeg reports {}, "
@@ -111,8 +110,10 @@ class JpegSource final : public RowSource {
     void fill_header(PictureRemarks& remarks) {
         const bool is_grey = info_.jpeg_color_space == JCS_GRAYSCALE;
         const bool is_cmyk = info_.jpeg_color_space == JCS_CMYK || info_.jpeg_color_space == JCS_YCCK;
-        is_known_ =
-            is_grey || is_cmyk || info_.jpeg_color_space == JCS_YCbCr || info_.jpeg_color_space == JCS_RGB;
+        if (!is_grey && !is_cmyk && info_.jpeg_color_space != JCS_YCbCr && info_.jpeg_color_space != JCS_RGB)
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("has {} components of no known colours", info_.num_components), name_,
+                         "save it as grey, RGB or CMYK"});
         space_ = is_grey ? JCS_GRAYSCALE : is_cmyk ? JCS_CMYK : JCS_RGB;
         header_.width = header_.full_width = int(info_.image_width);
         header_.height = header_.full_height = int(info_.image_height);
@@ -165,7 +166,7 @@ class JpegSource final : public RowSource {
     jpeg_decompress_struct info_{};
     jpeg_progress_mgr progress_{};
     J_COLOR_SPACE space_ = JCS_RGB;
-    bool is_known_ = false, is_read_ = false;
+    bool is_read_ = false;
 };
 
 } // namespace
@@ -182,7 +183,6 @@ std::unique_ptr<PixelSource> open_jpeg(std::unique_ptr<std::istream> stream, con
     std::vector<uint8_t> bytes((std::istreambuf_iterator<char>(*stream)), std::istreambuf_iterator<char>());
     PictureRemarks own;
     auto source = std::make_unique<JpegSource>(std::move(bytes), name, own);
-    if (!source->is_known()) return nullptr;
     remarks.notes.insert(remarks.notes.end(), own.notes.begin(), own.notes.end());
     return source;
 }

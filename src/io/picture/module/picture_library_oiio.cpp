@@ -1,8 +1,5 @@
 // The module relief_pictures: pixels as stored, without any colour or alpha conversion.
-#include <fstream>
-#include <istream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,7 +7,6 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "io/picture/jpeg_end.h"
 #include "io/picture/module/color_transform_ocio.h"
 #include "io/picture/picture_error.h"
 #include "io/picture/picture_library.h"
@@ -93,7 +89,6 @@ class OiioSource final : public PixelSource {
     explicit OiioSource(std::string name) : name_(std::move(name)) { open(); }
     OiioSource(std::string name, std::string_view bytes)
         : name_(std::move(name)), proxy_(std::make_unique<MemoryReader>(bytes.data(), bytes.size())) {
-        bytes_ = bytes;
         open();
     }
 
@@ -117,25 +112,12 @@ class OiioSource final : public PixelSource {
         header_ = make_header(spec);
     }
 
-    bool is_of(std::string_view format) const { return input_->format_name() == format; }
-
-    void check_jpeg() const {
-        std::unique_ptr<std::istream> stream;
-        if (proxy_)
-            stream = std::make_unique<std::istringstream>(std::string(bytes_));
-        else
-            stream = std::make_unique<std::ifstream>(name_, std::ios::binary);
-        if (!has_jpeg_end(*stream)) fail_damaged(name_, "ends in the middle of its picture");
-    }
-
     void read(const OIIO::TypeDesc& type, int channel_count, size_t stride_bytes, void* values) {
-        if (is_of("jpeg")) check_jpeg();
         if (!input_->read_image(0, 0, 0, channel_count, type, values, OIIO::stride_t(stride_bytes)))
             fail_damaged(name_, "cannot be read: " + get_first_line(input_->geterror()));
     }
 
     std::string name_;
-    std::string_view bytes_;              ///< of pictures in memory
     std::unique_ptr<MemoryReader> proxy_; ///< of pictures in memory; outlives the input
     std::unique_ptr<OIIO::ImageInput> input_;
     PixelHeader header_;
