@@ -1,10 +1,13 @@
 """A shot whose camera and map change from frame to frame, and what tests of farms ask of a job of it."""
 import json
+import os
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "viewer"))
 from small_scene import write_small_scene  # noqa: E402
@@ -68,6 +71,45 @@ def list_attempts(job, state):
 def choose_victims(seed=29):
     """A third of all tasks."""
     return set(random.Random(seed).sample(range(TASKS), TASKS // 3))
+
+
+def disturb_unfinished(job, task, who, disturb):
+    """Calls disturb(process), which says whether it met, for the process of an attempt, unless the film of its task is in
+    place by then. Whether the process was met.
+
+    The process is stopped before: otherwise it could finish between the question and the kill. It goes on where it was not met;
+    who requeues a process leaves it to Slurm to continue it, together with the signal that ends it.
+    """
+    process = int(who.split("-")[1])
+    if not send_signal(process, signal.SIGSTOP):
+        return False  # it has just ended
+    while (state := read_process_state(process)) not in ("T", "Z", ""):
+        time.sleep(0.001)
+    is_met = state == "T" and not any((job / "parts").glob(f"*/{task}.film")) and disturb(process)
+    if not is_met:
+        send_signal(process, signal.SIGCONT)
+    return is_met
+
+
+def send_signal(process, number):
+    """Whether there was such a process."""
+    try:
+        os.kill(process, number)
+        return True
+    except ProcessLookupError:
+        return False
+
+
+def kill(process):
+    return send_signal(process, signal.SIGKILL)
+
+
+def read_process_state(process):
+    """The letter that Linux gives the state of a process, as "T" for a stopped one; empty: there is no such process."""
+    try:
+        return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return ""
 
 
 def damage(film):

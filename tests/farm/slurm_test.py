@@ -3,27 +3,25 @@
 100 tasks in three array jobs; a third of them is killed or requeued while it runs, one is rendered twice at once, one part is
 damaged: the frames have the bits of one render, and `status` tells each event. A requeued task waits two minutes.
 """
-import os
 import pathlib
 import re
-import signal
 import subprocess
 import sys
 import tempfile
 import time
 
-from farm_shot import (TASKS, choose_victims, damage, expect_reference, list_attempts, plan, read_status, render_reference, run,
-                       write_shot)
+from farm_shot import (TASKS, choose_victims, damage, disturb_unfinished, expect_reference, kill, list_attempts, plan, read_status,
+                       render_reference, run, write_shot)
 from slurm_cluster import Cluster, find_obstacle
 
 PATIENCE = 1500
 TWICE, DAMAGED = 7, 42
 
 
-def find_slurm_task(who):
-    """JOB_INDEX of the process of an attempt, from its environment."""
+def find_slurm_task(process):
+    """JOB_INDEX of a process, from its environment."""
     try:
-        data = pathlib.Path(f"/proc/{who.split('-')[1]}/environ").read_bytes().decode(errors="replace")
+        data = pathlib.Path(f"/proc/{process}/environ").read_bytes().decode(errors="replace")
     except OSError:
         return None
     job = re.search(r"SLURM_ARRAY_JOB_ID=(\d+)", data)
@@ -33,15 +31,11 @@ def find_slurm_task(who):
 
 def disturb(cluster, job, task, who):
     """Every second victim is requeued, the others are killed. Whether it was met in time."""
-    if task % 2 == 0:
-        name = find_slurm_task(who)
+    def requeue(process):
+        name = find_slurm_task(process)
         return bool(name) and subprocess.run(["scontrol", "requeue", name], env=cluster.environment,
                                              capture_output=True).returncode == 0
-    try:
-        os.kill(int(who.split("-")[1]), signal.SIGKILL)
-        return True
-    except ProcessLookupError:
-        return False
+    return disturb_unfinished(job, task, who, requeue if task % 2 == 0 else kill)
 
 
 def is_idle(cluster):
@@ -56,8 +50,8 @@ def disturb_all(cluster, job, victims):
         for _ in range(100):
             for task, who in list_attempts(job, "running"):
                 kind = "requeued" if task % 2 == 0 else "killed"
-                if task in victims and task not in met[kind] and disturb(cluster, job, task, who):
-                    met[kind].add(task)
+                if task in victims and task not in {other for other, _ in met[kind]} and disturb(cluster, job, task, who):
+                    met[kind].add((task, who))
             time.sleep(0.005)
     return met
 
@@ -90,8 +84,13 @@ def check(cluster, relief, folder):
         submit(cluster, relief, "retry", job, "--submit", "slurm")
         cluster.await_true(lambda: is_idle(cluster), "an empty queue", PATIENCE)
     status = read_status(relief, job)
+    lost, partial, done = [set(list_attempts(job, state)) for state in ("lost", "partial", "done")]
+    assert met["killed"] <= lost, met["killed"] - lost
+    # Slurm continues a process before it ends it, and the fastest are done by then.
+    assert met["requeued"] <= lost | partial | done, met["requeued"] - lost - partial - done
+    assert len(met["requeued"] - done) >= 6, met["requeued"] & done
     events = status["events"]
-    assert events["lost"] + events["interrupted"] >= len(met["killed"]) + len(met["requeued"]), status
+    assert (events["lost"], events["interrupted"]) == (len(lost), len(partial)), status
     assert events["done_twice"] >= 1, status
     expect_reference(relief, folder, job)
 
