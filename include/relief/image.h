@@ -36,6 +36,9 @@ struct Image {
 /// Entry of the header of every rendered picture: which samples it holds, "A:B".
 inline constexpr const char* kRenderedTag = "relief:samples";
 
+/// Texture::colour_tag of a PNG file whose header says that its values are linear.
+inline constexpr const char* kLinearTag = "gAMA chunk of linear values";
+
 /// Texels as stored in the file, never colour converted: four interleaved channels (missing ones are 0, a
 /// missing fourth is 1; `channel_count` is the number in the file), row 0 at the top. Exactly one of `floats`
 /// and `halves` is filled.

@@ -1,7 +1,6 @@
-// Reading and writing of files: scenes, meshes, maps and images. In library relief_io; the core does not need
-// it. relief_io reads EXR, HDR and most TIFF and JPEG itself; PNG and other kinds are read by the
-// module relief_pictures beside the program, loaded when the first such image is opened; a build without that
-// module reads PNG by libpng.
+// Reading and writing of files: scenes, meshes, maps and images. The core does not need it (library
+// relief_io). relief_io reads HDR, TIFF, PNG, JPEG and EXR itself, except EXR with subsampled channels: such
+// a file is read by the module relief_pictures beside the program, which is loaded when it is first needed.
 #pragma once
 
 #include <cstdint>

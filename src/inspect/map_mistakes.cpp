@@ -97,7 +97,7 @@ void find_type_mistakes(const Displacement& map, MapMeaning meaning, const MapSt
         add_warning(findings, "W-PICTURE",
                     "a picture that Relief rendered, not a map: it is seen by oiiotool "
                     "or a viewer of EXR, and compared by relief compare");
-    else if (!statistics.colour_tag.empty())
+    else if (!statistics.colour_tag.empty() && statistics.colour_tag != kLinearTag)
         add_warning(findings, "W-SRGB",
                     "the file calls its values colours ({}); they are read raw, but the program that wrote "
                     "it may have converted them: export as data (Non-Color, Raw, linear)",

@@ -8,6 +8,7 @@
 
 #include <OpenImageIO/half.h>
 
+#include "io/png_bytes.h"
 #include "io/test_files.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
@@ -256,16 +257,6 @@ TEST_F(Conventions, one_tile_of_several_is_warned_of_with_the_pattern) {
     EXPECT_EQ(find_tile_pattern(folder_ / "d1234.exr"), "");
 }
 
-namespace {
-
-std::string make_chunk(const std::string& kind, const std::string& content) {
-    std::string chunk;
-    for (int shift = 24; shift >= 0; shift -= 8) chunk += char(content.size() >> shift & 0xff);
-    return chunk + kind + content + "crc?";
-}
-
-} // namespace
-
 TEST_F(Conventions, tags_of_colour_are_read_from_the_file_itself) {
     write_encodings();
     const auto get_tag = [&](const std::string& name) { return read_texture(folder_ / name).colour_tag; };
@@ -300,19 +291,19 @@ TEST_F(Conventions, tags_of_colour_are_read_from_the_file_itself) {
     EXPECT_EQ(get_tag("p.tif"), "ICC profile");
 }
 
-TEST_F(Conventions, a_gamma_of_one_is_no_tag_of_colour) {
+TEST_F(Conventions, a_gamma_of_one_is_a_tag_of_linear_values) {
     // The same picture with a chunk put in front of its pixels.
     write_pixels<uint8_t>("p.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {1, 2, 3});
     std::ifstream stream(folder_ / "p.png", std::ios::binary);
     const std::string plain{std::istreambuf_iterator<char>(stream), {}};
     const auto get_tag = [&](const std::string& kind, const std::string& content) {
         std::string text = plain;
-        text.insert(8 + 25, make_chunk(kind, content));
+        text.insert(8 + 25, test::make_png_chunk(kind, content));
         write("tagged.png", text);
         MapOptions options;
         return load("tagged.png", options).tiles[0].texture->colour_tag;
     };
-    EXPECT_EQ(get_tag("gAMA", std::string("\x00\x01\x86\xa0", 4)), "");
+    EXPECT_EQ(get_tag("gAMA", std::string("\x00\x01\x86\xa0", 4)), kLinearTag);
     EXPECT_EQ(get_tag("gAMA", std::string("\x00\x00\xb1\x8f", 4)), "gAMA chunk");
     EXPECT_EQ(get_tag("tEXt", "a comment"), "");
 }

@@ -1,4 +1,4 @@
-// HDR, TIFF and JPEG files read by the library itself, as OpenImageIO reads them; orientations and windows.
+// Relief reads HDR, TIFF, JPEG and PNG files as OpenImageIO does, with their orientations and windows.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -8,7 +8,6 @@
 
 #include <OpenImageIO/imageio.h>
 #include <jpeglib.h>
-#include <zlib.h>
 
 #include "io/file_system.h"
 #include "io/picture/exif_orientation.h"
@@ -17,6 +16,7 @@
 #include "io/picture/jpeg_source.h"
 #include "io/picture/picture_library.h"
 #include "io/picture/tiff_source.h"
+#include "io/png_bytes.h"
 #include "io/source_values.h"
 #include "io/test_files.h"
 #include "relief/io.h"
@@ -167,8 +167,14 @@ TEST_F(OwnPictures, jpeg_is_read_as_by_the_module) {
 
 namespace {
 
-/// One colour in CMYK; `is_of_adobe` says whether the marker of Adobe's programs stands in the file.
-std::string make_cmyk_jpeg(const std::array<uint8_t, 4>& inks, bool is_of_adobe) {
+struct CmykKind {
+    J_COLOR_SPACE stored = JCS_CMYK;
+    bool has_adobe_marker = true;
+};
+
+/// Returns a JPEG file of 16 x 16 pixels whose left and right halves have one colour each.
+std::string make_cmyk_jpeg(const std::array<std::array<uint8_t, 4>, 2>& inks, const CmykKind& kind) {
+    constexpr int kSide = 16;
     jpeg_compress_struct info;
     jpeg_error_mgr errors;
     info.err = jpeg_std_error(&errors);
@@ -176,16 +182,19 @@ std::string make_cmyk_jpeg(const std::array<uint8_t, 4>& inks, bool is_of_adobe)
     unsigned char* bytes = nullptr;
     unsigned long count = 0;
     jpeg_mem_dest(&info, &bytes, &count);
-    info.image_width = info.image_height = 16;
+    info.image_width = info.image_height = kSide;
     info.input_components = 4, info.in_color_space = JCS_CMYK;
     jpeg_set_defaults(&info);
+    jpeg_set_colorspace(&info, kind.stored);
     jpeg_set_quality(&info, 100, TRUE);
-    info.write_Adobe_marker = is_of_adobe ? TRUE : FALSE;
+    for (int c = 0; c < 4; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
+    info.write_Adobe_marker = kind.has_adobe_marker ? TRUE : FALSE;
     jpeg_start_compress(&info, TRUE);
     std::vector<uint8_t> row;
-    for (int x = 0; x < 16; ++x) row.insert(row.end(), inks.begin(), inks.end());
+    for (int x = 0; x < kSide; ++x)
+        row.insert(row.end(), inks[size_t(2 * x / kSide)].begin(), inks[size_t(2 * x / kSide)].end());
     uint8_t* rows[] = {row.data()};
-    for (int y = 0; y < 16; ++y) jpeg_write_scanlines(&info, rows, 1);
+    for (int y = 0; y < kSide; ++y) jpeg_write_scanlines(&info, rows, 1);
     jpeg_finish_compress(&info);
     jpeg_destroy_compress(&info);
     const std::string result(reinterpret_cast<const char*>(bytes), count);
@@ -208,45 +217,59 @@ TEST_F(OwnPictures, jpeg_of_unknown_components_is_refused) {
 }
 
 TEST_F(OwnPictures, jpeg_of_four_inks_becomes_colours) {
-    for (const bool is_of_adobe : {false, true}) {
-        const std::filesystem::path file =
-            write("inks.jpg", make_cmyk_jpeg(is_of_adobe ? std::array<uint8_t, 4>{200, 100, 50, 128}
-                                                         : std::array<uint8_t, 4>{55, 155, 205, 127},
-                                             is_of_adobe));
+    for (const CmykKind& kind : {CmykKind{}, CmykKind{JCS_YCCK, true}, CmykKind{JCS_CMYK, false}}) {
+        std::array<std::array<uint8_t, 4>, 2> light{{{200, 100, 50, 128}, {30, 220, 140, 255}}};
+        if (!kind.has_adobe_marker)
+            for (auto& pixel : light)
+                for (uint8_t& ink : pixel) ink = uint8_t(255 - ink);
+        const std::filesystem::path file = write("inks.jpg", make_cmyk_jpeg(light, kind));
         const Texture texture = read_texture(file);
         ASSERT_EQ(texture.channel_count, 3u);
+        ASSERT_EQ(texture.warnings.size(), 1u);
+        EXPECT_HAS(texture.warnings[0], "inks.jpg: is CMYK, and its colours become RGB without its profile");
         PictureRemarks remarks;
         const std::vector<float> values = read_all(*open_own(file, remarks));
-        const float light = 128.0f / 255 / 255;
-        EXPECT_NEAR(values[0], 200 * light, 0.01f);
-        EXPECT_NEAR(values[1], 100 * light, 0.01f);
-        EXPECT_NEAR(values[2], 50 * light, 0.01f);
+        ASSERT_EQ(values.size(), 16u * 16 * 3);
+        const float dark = 128.0f / 255 / 255, bright = 1.0f / 255;
+        const std::array<float, 3> left{200 * dark, 100 * dark, 50 * dark},
+            right{30 * bright, 220 * bright, 140 * bright};
+        for (size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(values[c], left[c], 0.015f);
+            EXPECT_NEAR(values[7 * 3 + c], left[c], 0.015f);
+            EXPECT_NEAR(values[8 * 3 + c], right[c], 0.015f);
+            EXPECT_NEAR(values[values.size() - 3 + c], right[c], 0.015f);
+        }
     }
+}
+
+TEST_F(OwnPictures, jpeg_with_an_unknown_transform_of_colours_is_warned_of) {
+    std::string bytes = make_cmyk_jpeg({{{200, 100, 50, 128}, {200, 100, 50, 128}}}, {});
+    const size_t marker = bytes.find("\xff\xee");
+    constexpr size_t kTransform = 15; // after marker, length, "Adobe", version and two sets of flags
+    ASSERT_NE(marker, std::string::npos);
+    bytes[marker + kTransform] = 1;
+    const Texture texture = read_texture(write("odd.jpg", bytes));
+    ASSERT_EQ(texture.warnings.size(), 2u);
+    EXPECT_HAS(texture.warnings[1],
+               "odd.jpg: its marker of Adobe's programs names an unknown colour transform (1)");
+}
+
+TEST_F(OwnPictures, hdr_of_other_values_is_refused_by_name) {
+    const std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n" + std::string(4, '\x80');
+    EXPECT_HAS(message_of([&] { read_texture(write("x.hdr", text)); }),
+               "x.hdr: has other values than RGBE (FORMAT=32-bit_rle_xyze)");
 }
 
 namespace {
 
-/// A compressed text chunk of XMP whose elements are nested `depth` deep.
+/// Returns a compressed text chunk of XMP whose elements are nested `depth` deep.
 std::string make_nested_metadata(int depth) {
     std::string xmp = "<x:xmpmeta xmlns:x='adobe:ns:meta/'>"
                       "<rdf:RDF xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#'><rdf:Description>";
     for (int k = 0; k < depth; ++k) xmp += "<x:a>";
     for (int k = 0; k < depth; ++k) xmp += "</x:a>";
     xmp += "</rdf:Description></rdf:RDF></x:xmpmeta>";
-    uLongf size = compressBound(uLong(xmp.size()));
-    std::string packed(size, '\0');
-    EXPECT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &size,
-                       reinterpret_cast<const Bytef*>(xmp.data()), uLong(xmp.size())),
-              Z_OK);
-    const std::string keyword = "XML:com.adobe.xmp";
-    const std::string content = "zTXt" + keyword + std::string(2, '\0') + packed.substr(0, size);
-    const auto make_number = [](size_t number) {
-        std::string bytes;
-        for (int shift = 24; shift >= 0; shift -= 8) bytes += char(number >> shift & 0xff);
-        return bytes;
-    };
-    const uLong check = crc32(0, reinterpret_cast<const Bytef*>(content.data()), uInt(content.size()));
-    return make_number(content.size() - 4) + content + make_number(check);
+    return test::make_png_chunk("zTXt", "XML:com.adobe.xmp" + std::string(2, '\0') + test::deflate_all(xmp));
 }
 
 } // namespace

@@ -18,7 +18,8 @@ using PngSources = FileTest;
 namespace {
 
 std::unique_ptr<PixelSource> open_file(const std::filesystem::path& file) {
-    return open_png(std::make_unique<std::ifstream>(file, std::ios::binary), file.string());
+    PictureRemarks remarks;
+    return open_png(std::make_unique<std::ifstream>(file, std::ios::binary), file.string(), remarks);
 }
 
 template <class T> std::vector<T> make_noise(size_t count) {
@@ -56,7 +57,8 @@ TEST_F(PngSources, that_are_cut_or_no_png_are_told) {
     const std::string message = message_of([&] { read_all(*open_file(file)); });
     EXPECT_NE(message.find("a.png"), std::string::npos) << message;
     EXPECT_NE(message.find("damaged or incomplete"), std::string::npos) << message;
-    EXPECT_EQ(open_png(std::make_unique<std::istringstream>("GIF89a, and more"), "b.gif"), nullptr);
+    PictureRemarks remarks;
+    EXPECT_EQ(open_png(std::make_unique<std::istringstream>("GIF89a, and more"), "b.gif", remarks), nullptr);
 }
 
 } // namespace relief

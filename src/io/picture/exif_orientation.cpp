@@ -7,10 +7,14 @@ namespace relief {
 
 int find_exif_orientation(std::span<const uint8_t> segment) {
     constexpr std::array<uint8_t, 6> kExif = {'E', 'x', 'i', 'f', 0, 0};
-    constexpr size_t kEntryBytes = 12, kOrientation = 274, kShort = 3;
-    if (segment.size() < kExif.size() + 8 || std::memcmp(segment.data(), kExif.data(), kExif.size()) != 0)
+    if (segment.size() < kExif.size() || std::memcmp(segment.data(), kExif.data(), kExif.size()) != 0)
         return 0;
-    const std::span<const uint8_t> tiff = segment.subspan(kExif.size());
+    return find_tiff_orientation(segment.subspan(kExif.size()));
+}
+
+int find_tiff_orientation(std::span<const uint8_t> tiff) {
+    constexpr size_t kHeaderBytes = 8, kEntryBytes = 12, kOrientation = 274, kShort = 3;
+    if (tiff.size() < kHeaderBytes) return 0;
     const bool is_big = tiff[0] == 'M';
     const auto read = [&](size_t at, size_t count) {
         size_t value = 0;

@@ -8,7 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "io/picture/picture_error.h"
+#include "io/picture/picture_text.h"
 #include "io/picture/row_source.h"
 
 namespace relief {
@@ -148,16 +151,17 @@ std::unique_ptr<PixelSource> open_hdr(std::unique_ptr<std::istream> stream, cons
     stream->read(start.data(), 2);
     if (!*stream || start[0] != '#' || start[1] != '?') return nullptr;
     constexpr int kMostLines = 1000;
-    bool is_other = false;
     for (int k = 0; k < kMostLines; ++k) {
         const std::optional<std::string> line = read_line(*stream);
         if (!line) break;
-        if (line->starts_with("FORMAT=")) is_other = *line != "FORMAT=32-bit_rle_rgbe";
+        if (line->starts_with("FORMAT=") && *line != "FORMAT=32-bit_rle_rgbe")
+            throw Error(ErrorKind::bad_input,
+                        {fmt::format("has other values than RGBE ({})", make_printable(*line)), name,
+                         "save it as Radiance RGBE or as EXR"});
         if (k == 0 || !line->empty()) continue;
         const std::optional<std::string> size = read_line(*stream);
         const std::optional<Resolution> resolution = size ? parse_resolution(*size) : std::nullopt;
         if (!resolution) fail_damaged(name, "cannot be opened: its header names no size");
-        if (is_other) return nullptr;
         return std::make_unique<HdrSource>(std::move(stream), name, *resolution, remarks);
     }
     fail_damaged(name, "cannot be opened: its header does not end");

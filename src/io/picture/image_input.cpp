@@ -53,7 +53,7 @@ void check_size(const PixelHeader& header, const std::string& name, uint64_t fil
              fmt::format("is too large: {} x {} with {} channels", header.width, header.height,
                          header.channels.size()),
              fmt::format("the limit is {} a side and 2^31 texels", kMaxSide));
-    // No supported compression packs constant pixels tighter than this: longer claims are damage.
+    // No supported compression packs constant pixels, as stored, tighter than this: longer claims are damage.
     constexpr uint64_t kBestCompression = 8192, kSlack = uint64_t(4) << 20;
     // A display window that surrounds the pixels is filled up with zeros, which takes memory as well.
     const uint64_t display_pixels =
@@ -99,7 +99,7 @@ void check_start(std::istream& stream, const std::string& name) {
                                                          std::string_view("MM\0\x2a", 4),
                                                          std::string_view("II\x2b\0", 4),
                                                          std::string_view("MM\0\x2b", 4),
-                                                         "\x89PNG",
+                                                         "\x89PNG\r\n\x1a\n",
                                                          "\xff\xd8",
                                                          "#?"};
     constexpr size_t kLongest = 16;
@@ -170,13 +170,12 @@ void check_bytes(const Bytes& bytes) {
     check_attributes(*stream, bytes.name, bytes.count);
 }
 
-/// Opens kinds beside EXR. The library of pictures gets only files that are of none of the four kinds below:
-/// hostile ones end the process in it.
+/// Opens files of other kinds than plain EXR. The library of pictures gets only EXR files with subsampled
+/// channels: hostile files of the other kinds end the process in it.
 std::unique_ptr<PixelSource> open_other(const Bytes& bytes, PictureRemarks& remarks) {
-    for (const auto& open : {open_hdr, open_tiff, open_jpeg})
+    for (const auto& open : {open_hdr, open_tiff, open_jpeg, open_png})
         if (std::unique_ptr<PixelSource> source = open(bytes.open(), bytes.name, remarks)) return source;
-    std::unique_ptr<PixelSource> source = open_png(bytes.open(), bytes.name);
-    return source ? std::move(source) : bytes.open_by_library();
+    return bytes.open_by_library();
 }
 
 /// All channels of the first part.

@@ -33,6 +33,8 @@ struct Errors {
     std::jmp_buf place;
     std::array<char, JMSG_LENGTH_MAX> message{}, first_warning{};
     int warning_count = 0;
+    bool has_odd_colors =
+        false; ///< the marker of Adobe's programs names a transform that libjpeg does not know
 };
 
 constexpr int kMostScans = 500; ///< a small file of many scans takes hours (libjpeg-turbo, README)
@@ -46,6 +48,7 @@ constexpr int kMostScans = 500; ///< a small file of many scans takes hours (lib
 void on_message(j_common_ptr info, int level) {
     if (level >= 0) return; // a trace
     auto& errors = *reinterpret_cast<Errors*>(info->err);
+    errors.has_odd_colors |= info->err->msg_code == JWRN_ADOBE_XFORM;
     if (errors.warning_count++ == 0) info->err->format_message(info, errors.first_warning.data());
 }
 
@@ -120,6 +123,12 @@ class JpegSource final : public RowSource {
         header_.type = SampleType::uint8;
         header_.channels = is_grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
         header_.pixel_bytes = header_.channels.size();
+        if (is_cmyk) remarks.warnings.push_back(describe_inks(name_));
+        if (errors_.has_odd_colors)
+            remarks.warnings.push_back(fmt::format(
+                "{}: its marker of Adobe's programs names an unknown colour transform ({}), so that "
+                "colours may be wrong: save it again as RGB",
+                name_, int(info_.Adobe_transform)));
         int orientation = kUpright;
         for (const jpeg_marker_struct* marker = info_.marker_list; marker; marker = marker->next)
             if (const int found = find_exif_orientation({marker->data, marker->data_length}))
@@ -130,7 +139,7 @@ class JpegSource final : public RowSource {
     void decode(const VisitRow& visit) override {
         if (is_read_) run([&] { jpeg_abort_decompress(&info_), read_header(); });
         is_read_ = true;
-        errors_.warning_count = 0; // those of the header change no pixel
+        errors_.warning_count = 0; // those of the header change no pixel, but for has_odd_colors
         run([&] {
             info_.out_color_space = space_;
             jpeg_start_decompress(&info_);
@@ -149,8 +158,8 @@ class JpegSource final : public RowSource {
         run([&] { jpeg_finish_decompress(&info_); });
     }
 
-    /// Four inks a pixel become three colours, in place and without a profile. Adobe's programs store how
-    /// much of the light each ink leaves, others how much it takes.
+    /// Converts four inks per pixel to RGB in place, without a profile. Adobe's programs store the light that
+    /// each ink leaves; other programs store the light that it absorbs.
     void remove_inks(std::vector<uint8_t>& row) const {
         const auto find_light = [&](uint8_t ink) { return info_.saw_Adobe_marker ? ink : 255 - ink; };
         for (size_t pixel = 0; pixel < row.size() / 4; ++pixel) {
@@ -181,10 +190,7 @@ std::unique_ptr<PixelSource> open_jpeg(std::unique_ptr<std::istream> stream, con
     stream->clear();
     stream->seekg(0);
     std::vector<uint8_t> bytes((std::istreambuf_iterator<char>(*stream)), std::istreambuf_iterator<char>());
-    PictureRemarks own;
-    auto source = std::make_unique<JpegSource>(std::move(bytes), name, own);
-    remarks.notes.insert(remarks.notes.end(), own.notes.begin(), own.notes.end());
-    return source;
+    return std::make_unique<JpegSource>(std::move(bytes), name, remarks);
 }
 
 } // namespace relief

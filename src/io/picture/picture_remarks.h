@@ -11,4 +11,11 @@ struct PictureRemarks {
     bool is_cube_map = false;
 };
 
+/// Returns the warning about a picture of four inks.
+inline std::string describe_inks(const std::string& name) {
+    return name +
+           ": is CMYK, and its colours become RGB without its profile, so that they differ from what other "
+           "programs show: save it as RGB";
+}
+
 } // namespace relief

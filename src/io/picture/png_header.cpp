@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include "relief/image.h"
+
 namespace relief {
 
 namespace {
@@ -46,15 +48,16 @@ std::string find_png_color_tag(std::istream& stream) {
     std::array<char, 8> head{};
     if (!skip_signature(stream)) return {};
     uint64_t position = 8;
+    std::string tag;
     while (stream.read(head.data(), 8)) {
         const std::string_view kind(head.data() + 4, 4);
         if (kind == "IDAT") break; // those chunks stand before the pixels
         if (kind == "sRGB" || kind == "iCCP" || kind == "cHRM") return std::string(kind) + " chunk";
-        if (kind == "gAMA" && is_gamma_of_colors(stream)) return "gAMA chunk";
+        if (kind == "gAMA") tag = is_gamma_of_colors(stream) ? "gAMA chunk" : kLinearTag;
         position += 8 + read_uint32(head.data()) + kChecksumBytes;
         stream.seekg(std::streamoff(position));
     }
-    return {};
+    return tag;
 }
 
 } // namespace relief

@@ -11,8 +11,9 @@ namespace relief {
 /// `stream_bytes` is its whole length; the position moves.
 bool has_oversized_png_chunk(std::istream& stream, uint64_t stream_bytes);
 
-/// The chunk of a PNG stream that calls its values colours: "sRGB chunk", or iCCP, cHRM, or gAMA of another
-/// gamma than 1; empty: none, or no PNG. The position moves.
+/// Returns the chunk of a PNG stream that calls its values colours: "sRGB chunk", or iCCP, cHRM, or gAMA. For
+/// a gamma of 1 alone it returns kLinearTag; without such a chunk, or for another stream, an empty text. The
+/// position moves.
 std::string find_png_color_tag(std::istream& stream);
 
 } // namespace relief

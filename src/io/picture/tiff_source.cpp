@@ -113,6 +113,7 @@ class TiffSource final : public RowSource {
         if (width > uint32_t(kMostSide) || height > uint32_t(kMostSide) || width == 0 || height == 0)
             fail_damaged(name_, fmt::format("has no pixels, or too many: {} x {}", width, height));
         header_.width = header_.full_width = int(width), header_.height = header_.full_height = int(height);
+        if (samples_.colors == TiffColors::inks) remarks.warnings.push_back(describe_inks(name_));
         header_.type = samples_.get_type();
         const size_t channels = samples_.count_channels();
         header_.pixel_bytes =

@@ -232,7 +232,15 @@ std::shared_ptr<const Texture> AssetCache::decode(std::shared_ptr<Texture> textu
             "linear Rec.709: write color_space beside the file in a scene file, such as acescg, or "
             "linear if the header is wrong",
             texture->file, texture->colour_tag));
-    if (use == TextureUse::color && space.empty()) decode_colors(*texture);
+    if (use == TextureUse::color && space.empty()) {
+        if (texture->colour_tag == kLinearTag)
+            warnings_.push_back(fmt::format("{}: its header says that its values are linear ({}), but "
+                                            "integers that are colours are decoded from "
+                                            "sRGB: write color_space beside the file in a scene file: "
+                                            "linear, or srgb if the header is wrong",
+                                            texture->file, texture->colour_tag));
+        decode_colors(*texture);
+    }
     if (use != TextureUse::vector) spread_grey(*texture);
     if (!space.empty()) decode_texture(space, *texture);
     if (use == TextureUse::radiance && lift_negatives(*texture))
