@@ -27,6 +27,7 @@
 #include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/render.h"
+#include "render_warnings.h"
 
 namespace relief::cli {
 
@@ -54,12 +55,23 @@ constexpr double kBeforeConversion = 0.1,
     throw Error(ErrorKind::usage, {message, where, hint});
 }
 
-/// `progress`: what may have a bar on the line, or null.
+/// Prints warnings in the words of options, or of keys for a scene file. `progress` may have a bar on the
+/// line; null: there is none.
 void print_warnings(const ConvertOptions& options, const std::vector<std::string>& warnings,
                     WorkProgress* progress = nullptr) {
     if (options.progress.is_quiet || warnings.empty()) return;
     if (progress) progress->end_line();
-    for (const std::string& warning : warnings) print_error("relief: warning: {}\n", name_options(warning));
+    cli::print_warnings(warnings, get_kind(options.input) != FileKind::scene);
+}
+
+/// Prints the doubts that a render of the scene would print about its maps, and no other warnings of the
+/// scene.
+void print_doubts(const ConvertOptions& options, Scene scene, WorkProgress* progress = nullptr) {
+    scene.warnings.clear();
+    add_assumption_warnings(scene, options.progress.is_quiet, get_kind(options.input) != FileKind::scene);
+    for (std::string& warning : find_seam_warnings(scene)) scene.warnings.push_back(std::move(warning));
+    for (std::string& warning : find_tile_warnings(scene)) scene.warnings.push_back(std::move(warning));
+    print_warnings(options, scene.warnings, progress);
 }
 
 std::string format_factors(const Vec3f& v) {
@@ -145,6 +157,7 @@ int convert_map_file(const ConvertOptions& options) {
     }
     print_warnings(options, warnings);
     warnings.clear();
+    print_doubts(options, mesh ? make_mesh_scene(*mesh, &from) : make_map_scene(from));
     WorkProgress progress(options.progress);
     progress.tell(kBeforeConversion);
     const MapSamples samples = choose_samples(options, from);
@@ -210,7 +223,7 @@ int convert_surface(const ConvertOptions& options) {
     progress.tell(kBeforeConversion);
     keep_files(list_files(scene), options.output);
     print_warnings(options, scene.warnings, &progress);
-    print_warnings(options, find_tile_warnings(scene), &progress);
+    print_doubts(options, scene, &progress);
     const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel),
                                           progress.part(kBeforeConversion, kConverted));
     write_mesh(mesh, options.output, progress.part(kConverted, 1));

@@ -27,6 +27,7 @@
 #include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/render.h"
+#include "render_warnings.h"
 
 namespace relief::cli {
 
@@ -144,7 +145,14 @@ Inspection inspect_map_file(const InspectOptions& options, WorkProgress& progres
     Inspection inspection =
         inspect_map(map, meaning, mesh_or_null, progress.part(kRead, get_picture_start(options)));
     add_parts(split_picture_name(map.tiles.front().texture->file).file, inspection);
-    if (mesh) append(inspect_read_mesh(*mesh, mesh_warnings, &meant), inspection);
+    if (mesh) {
+        append(inspect_read_mesh(*mesh, mesh_warnings, &meant), inspection);
+        const bool can_render = std::ranges::none_of(
+            inspection.findings, [](const Finding& finding) { return finding.severity == Severity::error; });
+        if (can_render)
+            for (const std::string& warning : find_seam_warnings(make_mesh_scene(*mesh, &map)))
+                inspection.findings.push_back({Severity::warning, "W-SCENE", name_setting(warning, true)});
+    }
     const std::string file = split_picture_name(options.file).file;
     if (const std::string pattern = find_tile_pattern(file); !pattern.empty())
         inspection.findings.push_back(

@@ -36,7 +36,7 @@ RenderSettings check_picture(const RenderOptions& options, Scene& scene) {
 }
 
 RenderSettings prepare_picture(const RenderOptions& options, Scene& scene) {
-    add_assumption_warnings(scene, options);
+    add_assumption_warnings(scene, options.progress.is_quiet, is_mesh_file(options.input));
     const RenderSettings settings = check_picture(options, scene);
     refuse_empty_scene(scene, options.input);
     aim_scene(scene, choose_aim(options, settings.image),

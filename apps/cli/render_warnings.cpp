@@ -57,12 +57,12 @@ std::string describe_preparation(const std::string& step, EngineKind engine) {
 
 } // namespace
 
-void add_assumption_warnings(Scene& scene, const RenderOptions& options) {
+void add_assumption_warnings(Scene& scene, bool is_quiet, bool is_mesh) {
     for (const Finding& finding : find_doubtful_assumptions(scene)) {
         if (finding.severity != Severity::note)
             scene.warnings.push_back(finding.text);
-        else if (!options.progress.is_quiet)
-            print_error("relief: note: {}\n", name_setting(finding.text, is_mesh_file(options.input)));
+        else if (!is_quiet)
+            print_error("relief: note: {}\n", name_setting(finding.text, is_mesh));
     }
 }
 

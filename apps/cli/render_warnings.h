@@ -13,9 +13,9 @@
 
 namespace relief::cli {
 
-/// Adds to a scene's warnings what speaks against assumptions about its maps, and prints what speaks against
-/// what was declared, which is no warning: who declared it may know better.
-void add_assumption_warnings(Scene& scene, const RenderOptions& options);
+/// Adds doubts about assumed conventions of maps to the warnings of a scene, and prints doubts about declared
+/// ones as notes, unless `is_quiet`. `is_mesh`: as for name_setting.
+void add_assumption_warnings(Scene& scene, bool is_quiet, bool is_mesh);
 
 /// "displacement.axes = t,n,b" as the user writes it: an option with a mesh, a key in a scene file. Settings
 /// of the render are options with both.

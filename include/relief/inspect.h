@@ -79,10 +79,14 @@ Inspection inspect_map(const Displacement& map, MapMeaning meaning, const Mesh* 
 Displacement guess_map_meaning(const Displacement& map, const Mesh* mesh = nullptr);
 
 /// What speaks against the assumptions about the maps of a scene (Displacement::assumed): warnings; and a
-/// note where the values of a map clearly speak against axes that were declared. Each finding names the
-/// setting that mends it, "displacement.axes". At most 2^18 texels a map are looked at. That seams
-/// speak for object space is left to render(), which warns of it. The scene must be valid.
+/// note where the values of a map clearly speak against axes that were declared, or where a map has tiles
+/// under no face of its meshes. Each finding names the setting that mends it, "displacement.axes". At most
+/// 2^18 texels a map are looked at. Seams are left to find_seam_warnings. The scene must be valid.
 std::vector<Finding> find_doubtful_assumptions(const Scene& scene);
+
+/// Returns warnings about maps that are read as tangent space while the seams of their meshes speak for
+/// object space. It prepares the surfaces of the scene; render() warns of them by itself. Throws as render().
+std::vector<std::string> find_seam_warnings(const Scene& scene);
 
 /// Warnings about the UDIM tiles of the maps of a scene: files that are missing for a mesh, faces across
 /// tiles or outside of all of them. render() warns of them by itself. Indices of objects must be valid.

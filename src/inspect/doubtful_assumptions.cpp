@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/map_convention.h"
 #include "analysis/map_statistics.h"
@@ -19,6 +20,7 @@
 #include "relief/convert.h"
 #include "relief/inspect.h"
 #include "scene/face_uvs.h"
+#include "scene/tile_use.h"
 
 namespace relief {
 
@@ -153,6 +155,20 @@ void add_mesh_doubts(const Displacement& map, const Mesh& mesh, std::vector<Find
                     mirrored, mesh.face_sizes.size(), mesh.name);
 }
 
+/// A set of tiles may serve several meshes, so that tiles without faces are a note.
+void add_unused_tiles(const Displacement& map, const Scene& scene, const std::set<uint32_t>& meshes,
+                      std::vector<Finding>& findings) {
+    if (!map.is_udim) return;
+    std::set<int> unused;
+    for (const MapTile& tile : map.tiles) unused.insert(tile.udim);
+    for (const uint32_t index : meshes)
+        for (const int udim : find_tile_use(scene.meshes.at(index)).tiles) unused.erase(udim);
+    if (!unused.empty())
+        add_note(findings, "I-TILES",
+                 "no face of its meshes uses {} of its {} tiles ({}): the map may belong to another mesh",
+                 unused.size(), map.tiles.size(), fmt::join(unused, ", "));
+}
+
 /// What the values of the map say; the convention is tried on one of its meshes.
 void check_values(const Displacement& map, const Mesh& mesh, std::vector<Finding>& findings) {
     const bool has_axes = map.type == DisplacementType::vector && map.space == DisplacementSpace::tangent;
@@ -181,6 +197,7 @@ std::vector<Finding> check_map(const Displacement& map, const Scene& scene,
     };
     parallel_invoke(check_meshes, [&] { check_values(map, scene.meshes.at(*meshes.begin()), of_values); });
     std::ranges::move(of_values, std::back_inserter(findings));
+    add_unused_tiles(map, scene, meshes, findings);
     return findings;
 }
 

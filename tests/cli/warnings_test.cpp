@@ -52,6 +52,27 @@ class Warnings : public CommandTest {
     }
 };
 
+TEST_F(Warnings, of_a_map_are_those_of_convert_too) {
+    const auto convert = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "convert");
+        const CommandResult result = run(arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        return result.errors;
+    };
+    const std::string doubt = "relief: warning: displacement 'swapped': axes t,b,n are assumed, but ";
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"plane.obj", "--vdm", "swapped.exr", "--level", "1", "-o", "o.ply"},
+          {"swapped.exr", "--to-space", "object", "--mesh", "plane.obj", "-o", "o.exr"},
+          {"swapped.exr", "--to", "mudbox", "-o", "o.exr"}}) {
+        const std::string errors = convert(arguments);
+        EXPECT_TRUE(contains(errors, doubt)) << errors;
+        std::vector<std::string> quiet = arguments, known = arguments;
+        quiet.emplace_back("-q"), known.insert(known.end(), {"--preset", "mudbox"});
+        EXPECT_EQ(convert(quiet), "");
+        EXPECT_FALSE(contains(convert(known), "warning"));
+    }
+}
+
 TEST_F(Warnings, axes_that_the_values_contradict_name_the_option) {
     expect_warning({"--vdm", "swapped.exr"}, "set --axes to an order with G along n: the values do not show "
                                              "which of the other two is along t (presets mudbox");

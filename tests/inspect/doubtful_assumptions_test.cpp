@@ -165,5 +165,17 @@ TEST(DoubtfulAssumptions, of_a_large_map_are_those_of_a_part_of_its_texels) {
     EXPECT_FALSE(has_code(doubts, "E-NAN")) << "a texel between them was read";
 }
 
+TEST(DoubtfulAssumptions, note_tiles_under_no_face) {
+    Displacement map = make_map(make_sculpt_texture(64));
+    map.is_udim = true;
+    const Scene one = make_body_scene(make_sculpt_plane(), map);
+    EXPECT_TRUE(find_doubtful_assumptions(one).empty());
+    map.tiles.push_back({1003, map.tiles[0].texture}), map.tiles.push_back({1002, map.tiles[0].texture});
+    const Inspection doubts{{}, find_doubtful_assumptions(make_body_scene(make_sculpt_plane(), map))};
+    ASSERT_EQ(doubts.findings.size(), 1u);
+    EXPECT_EQ(doubts.findings[0].severity, Severity::note);
+    EXPECT_HAS_PART(find_text(doubts, "I-TILES"), "uses 2 of its 3 tiles (1002, 1003)");
+}
+
 } // namespace
 } // namespace relief::test

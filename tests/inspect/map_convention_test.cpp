@@ -248,6 +248,8 @@ TEST(MapConvention, a_render_warns_of_object_space_that_is_read_as_tangent) {
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_HAS_PART(warnings[0], "looks like object space");
     EXPECT_HAS_PART(warnings[0], "displacement.space = object");
+    EXPECT_EQ(find_seam_warnings(make_body_scene(cube, object)), warnings);
+    EXPECT_TRUE(find_seam_warnings(make_body_scene(cube, tangent)).empty());
     EXPECT_TRUE(render_for_warnings(cube, object, DisplacementSpace::object).empty());
     EXPECT_TRUE(render_for_warnings(cube, tangent, DisplacementSpace::tangent).empty());
 }
