@@ -4,6 +4,8 @@
 #include <tuple>
 #include <vector>
 
+#include "relief/material_inputs.h"
+
 namespace relief::viewer {
 
 namespace {
@@ -13,7 +15,6 @@ constexpr auto kDisplacementFields =
     std::tuple(&Displacement::type, &Displacement::space, &Displacement::axes, &Displacement::midlevel,
                &Displacement::has_midlevel, &Displacement::scale, &Displacement::flip_v, &Displacement::wrap,
                &Displacement::filter, &Displacement::assumed);
-constexpr auto kMaterialFields = std::tuple(&Material::base_color, &Material::roughness, &Material::metallic);
 constexpr auto kEnvironmentFields =
     std::tuple(&Environment::color, &Environment::strength, &Environment::rotate_degrees);
 constexpr auto kLightFields =
@@ -39,14 +40,40 @@ void copy_fields(const Item& from, Item& to, uint32_t fields, const Members& mem
     std::apply([&](auto... member) { (copy(member), ...); }, members);
 }
 
-template <class Item, class Members>
+/// Calls visit(member) for each number, colour and flag of materials. Emission comes once.
+template <class Visit> void visit_members(const Visit& visit) {
+    for (const MaterialInputKind& kind : list_material_fields()) {
+        if (kind.number) visit(kind.number);
+        if (kind.is_color()) visit(kind.color);
+        if (kind.flag) visit(kind.flag);
+    }
+}
+
+uint32_t find_changes(const Material& before, const Material& after) {
+    uint32_t fields = 0, bit = 1;
+    visit_members([&](auto member) {
+        if (!(before.*member == after.*member)) fields |= bit;
+        bit <<= 1;
+    });
+    return fields;
+}
+
+void copy_fields(const Material& from, Material& to, uint32_t fields) {
+    visit_members([&](auto member) {
+        if (fields & 1) to.*member = from.*member;
+        fields >>= 1;
+    });
+}
+
+/// `members`: those of copy_fields, where it needs some.
+template <class Item, class... Members>
 void copy_named(const std::vector<Item>& from, std::vector<Item>& to,
-                const std::map<std::string, uint32_t>& fields, const Members& members) {
+                const std::map<std::string, uint32_t>& fields, const Members&... members) {
     for (Item& item : to) {
         const auto changed = fields.find(item.name);
         if (changed == fields.end()) continue;
         const auto source = std::ranges::find(from, item.name, &Item::name);
-        if (source != from.end()) copy_fields(*source, item, changed->second, members);
+        if (source != from.end()) copy_fields(*source, item, changed->second, members...);
     }
 }
 
@@ -63,9 +90,7 @@ void ChangedFields::copy(const Displacement& from, Displacement& to, Fields fiel
     copy_fields(from, to, fields, kDisplacementFields);
 }
 
-void ChangedFields::copy(const Material& from, Material& to, Fields fields) {
-    copy_fields(from, to, fields, kMaterialFields);
-}
+void ChangedFields::copy(const Material& from, Material& to, Fields fields) { copy_fields(from, to, fields); }
 
 void ChangedFields::copy(const Environment& from, Environment& to, Fields fields) {
     copy_fields(from, to, fields, kEnvironmentFields);
@@ -76,7 +101,7 @@ void ChangedFields::copy(const Light& from, Light& to, Fields fields) {
 }
 
 void ChangedFields::note(const Material& before, const Material& after) {
-    materials_[after.name] |= find_changes(before, after, kMaterialFields);
+    materials_[after.name] |= find_changes(before, after);
 }
 
 void ChangedFields::note(const Environment& before, const Environment& after) {
@@ -90,7 +115,7 @@ void ChangedFields::note(size_t light, const Light& before, const Light& after) 
 
 void ChangedFields::carry(const Scene& from, Scene& to) const {
     copy_named(from.displacements, to.displacements, displacements_, kDisplacementFields);
-    copy_named(from.materials, to.materials, materials_, kMaterialFields);
+    copy_named(from.materials, to.materials, materials_);
     if (from.lights.size() == to.lights.size())
         for (const auto& [light, fields] : lights_)
             if (light < to.lights.size()) copy(from.lights[light], to.lights[light], fields);

@@ -15,8 +15,8 @@ from .textures import TextureWriter
 from .values import Constant, Place, Texels, Textured, make_constant
 
 LAYERED_NUMBERS = ["coat_weight", "coat_roughness", "fuzz_weight", "fuzz_roughness", "base_diffuse_roughness", "roughness"]
-COLORS = {"base_color", "specular_color", "coat_color", "fuzz_color", "transmission_color"}
-UNTEXTURED = {"ior", "coat_ior"}
+COLORS = {row["name"] for row in relief.material_inputs() if row["type"] == "color"}
+IORS = {row["alias"] or row["name"] for row in relief.material_inputs() if row["low"] == 1}
 
 
 class ExportedMaterial(NamedTuple):
@@ -148,7 +148,7 @@ class MaterialExport:
             label = key.replace("_", " ")
             if key == "normal":
                 result["geometry_normal"] = writer.normal(*value)
-            elif key in UNTEXTURED:
+            elif key in IORS:
                 result[key] = writer.number(value, label, 1.0, 1e6)
             elif key == "emission":
                 result[key] = writer.color(value, label, 0.0, np.inf)

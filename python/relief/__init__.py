@@ -10,7 +10,7 @@ Scene, Mesh, Displacement, Material, Camera, Light, Environment: what is rendere
 render, Session, LiveScene, Picture: pictures, at once, while maps are painted, or while all of a scene changes.
 Intersector, Hits: batches of rays. trees: structures and traversals to compare.
 parse_frames, name_frame: shots, frame by frame. Error: what all of these raise.
-inspect, convert: what maps and meshes are; maps in other conventions.
+inspect, convert: what maps and meshes are; maps in other conventions. material_inputs: the keys of materials.
 
 Lengths are scene units, y is up, angles degrees, colours linear Rec.709."""
 from . import trees
@@ -24,8 +24,8 @@ from ._relief import Progress
 from ._relief import version as __version__
 from ._render import Session, render
 from ._scene import Scene
-from ._tools import convert, devices, inspect, isas, name_frame, parse_frames
+from ._tools import convert, devices, inspect, isas, material_inputs, name_frame, parse_frames
 
 __all__ = ["Camera", "Displacement", "Environment", "Error", "Hits", "Intersector", "Light", "LiveScene", "Material", "Mesh", "NOTHING",
            "Picture", "Progress", "Scene", "Session", "__version__", "convert", "devices", "inspect", "isas",
-           "name_frame", "parse_frames", "render", "trees"]
+           "material_inputs", "name_frame", "parse_frames", "render", "trees"]

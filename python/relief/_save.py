@@ -5,11 +5,13 @@ import json
 import os
 from typing import Any, Mapping
 
+from . import _relief
+
 NUMBER = "##"  # at least: docs/shots.md
 OF_PICTURE = ("frames", "fps")  # which a scene in memory does not keep
 # Keys of materials that stand for the same under other names, of which a file has one.
-OTHER_NAMES = (({"roughness"}, {"specular_roughness"}), ({"metallic"}, {"base_metalness"}), ({"ior"}, {"specular_ior"}),
-               ({"opacity"}, {"geometry_opacity"}), ({"normal_texture"}, {"geometry_normal"}),
+OTHER_NAMES = (*(({row["alias"]}, {row["name"]}) for row in _relief.material_inputs()
+                 if row["alias"] and row["alias"] != "emission"),
                ({"emission"}, {"emission_luminance", "emission_color"}))
 
 

@@ -123,6 +123,16 @@ def devices() -> list[dict[str, Any]]:
     return _relief.devices()
 
 
+def material_inputs() -> list[dict[str, Any]]:
+    """Returns one dict per input of materials, in the order of the documentation.
+
+    "name": the key in scene files, which is OpenPBR's name. "alias": a shorter key that means the same, or None.
+    "type": "number", "color", "flag" or "normal". "low", "high": limits, of a color those of each part; infinity if there is none.
+    "default", "unit", "meaning". "is_textured": whether a texture can replace the value. "texture_key": a further key of that
+    texture, or None. Thread-safe."""
+    return _relief.material_inputs()
+
+
 def isas() -> list[str]:
     """Instruction sets that this machine and this build have, the best first."""
     return _relief.isas()

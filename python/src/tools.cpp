@@ -1,6 +1,7 @@
 // What scenes, meshes and maps are; maps in other conventions; what this machine and this build offer.
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,8 @@
 #include "relief/error.h"
 #include "relief/inspect.h"
 #include "relief/io.h"
+#include "relief/material_inputs.h"
+#include "scene_values.h"
 #include "scenes.h"
 #include "settings.h"
 #include "textures.h"
@@ -187,6 +190,42 @@ nb::list list_devices() {
     return devices;
 }
 
+const char* get_type(const MaterialInputKind& kind) {
+    if (kind.flag) return "flag";
+    if (kind.is_color()) return "color";
+    return kind.number || kind.is_emission() ? "number" : "normal";
+}
+
+nb::object get_default(const MaterialInputKind& kind) {
+    const Material plain;
+    if (kind.flag) return nb::cast(plain.*kind.flag);
+    if (kind.number) return nb::cast(plain.*kind.number);
+    if (kind.input == MaterialInput::emission_luminance) return nb::cast(plain.emission.x);
+    return kind.color ? make_list(plain.*kind.color) : nb::object(nb::none());
+}
+
+nb::list list_inputs() {
+    nb::list inputs;
+    for (const MaterialInputKind& kind : list_material_fields()) {
+        const auto add_text = [](nb::dict& row, const char* key, const char* text) {
+            row[key] = text ? nb::object(nb::str(text)) : nb::object(nb::none());
+        };
+        nb::dict row;
+        row["name"] = kind.name;
+        add_text(row, "alias", kind.alias);
+        row["type"] = get_type(kind);
+        row["low"] = kind.low;
+        row["high"] = kind.high == kUnboundedInput ? std::numeric_limits<float>::infinity() : kind.high;
+        row["default"] = get_default(kind);
+        row["unit"] = kind.unit;
+        row["is_textured"] = kind.input != kUntextured;
+        add_text(row, "texture_key", kind.texture_key);
+        row["meaning"] = kind.meaning;
+        inputs.append(row);
+    }
+    return inputs;
+}
+
 } // namespace
 
 void add_tools(nb::module_& module) {
@@ -203,6 +242,7 @@ void add_tools(nb::module_& module) {
     });
     module.def("traversals", &list_traversals, nb::arg("structure"), nb::arg("engine"));
     module.def("isas", &available_isas);
+    module.def("material_inputs", &list_inputs);
     module.def("devices", &list_devices);
 }
 

@@ -73,7 +73,7 @@ void check_input_texture(const Material& material, const InputTexture& texture, 
                "a texture lies on the surface, and with transmission_depth this is the colour of the inside",
                "leave transmission_depth out, so that each crossing of the surface takes the colour");
     visit_own_textures(material, [&](const char* name, const auto& own, MapFilter) {
-        if (own && kind.own_texture && std::string_view(name) == kind.own_texture)
+        if (own && kind.texture_key && std::string_view(name) == kind.texture_key)
             refuse(where, fmt::format("has a texture twice: {} as well", name), "leave one of the two out");
     });
 }

@@ -14,6 +14,7 @@
 #include "math/affine.h"
 #include "math/box.h"
 #include "relief/error.h"
+#include "relief/material_inputs.h"
 #include "relief/scene.h"
 #include "scene/check_input_textures.h"
 #include "scene/coordinate_limit.h"
@@ -214,10 +215,15 @@ void check_displacement(const Displacement& map, size_t index) {
     check_range(where, "scale", map.scale, -kHuge, kHuge);
 }
 
+/// Checks the ranges of numbers and colours.
+void check_inputs(const Material& material, const std::string& where) {
+    for (const MaterialInputKind& kind : list_material_fields()) {
+        if (kind.number) check_range(where, kind.short_name(), material.*kind.number, kind.low, kind.high);
+        if (kind.is_color()) check_range(where, kind.short_name(), material.*kind.color, kind.low, kind.high);
+    }
+}
+
 void check_glass(const Material& material, const std::string& where) {
-    check_range(where, "transmission_weight", material.transmission_weight, 0, 1);
-    check_range(where, "transmission_color", material.transmission_color, 0, 1);
-    check_range(where, "transmission_depth", material.transmission_depth, 0, kHuge);
     if (!(material.transmission_weight > 0)) return;
     if (material.coat_weight > 0 || material.fuzz_weight > 0)
         fail(where,
@@ -234,33 +240,12 @@ void check_glass(const Material& material, const std::string& where) {
 
 void check_material(const Material& material, size_t index) {
     const std::string where = describe("material", material.name, index);
-    check_range(where, "base_color", material.base_color, 0, 1);
-    check_range(where, "roughness", material.roughness, 0, 1);
-    check_range(where, "metallic", material.metallic, 0, 1);
-    check_range(where, "ior", material.ior, 1, kHuge);
-    check_range(where, "emission", material.emission, 0, kHuge);
+    check_inputs(material, where);
     check_light_group(where, material.light_group);
-    check_range(where, "opacity", material.opacity, 0, 1);
     if (is_cut_out(material) && !(material.emission == Vec3f{}))
         fail(where,
              "a surface that emits light cannot be a cut-out: opacity and emission exclude each other");
     check_glass(material, where);
-    for (const auto& [what, value] :
-         {std::pair("base_weight", material.base_weight),
-          std::pair("base_diffuse_roughness", material.base_diffuse_roughness),
-          std::pair("specular_weight", material.specular_weight),
-          std::pair("specular_roughness_anisotropy", material.specular_roughness_anisotropy),
-          std::pair("coat_roughness_anisotropy", material.coat_roughness_anisotropy),
-          std::pair("coat_weight", material.coat_weight),
-          std::pair("coat_roughness", material.coat_roughness),
-          std::pair("coat_darkening", material.coat_darkening),
-          std::pair("fuzz_weight", material.fuzz_weight),
-          std::pair("fuzz_roughness", material.fuzz_roughness)})
-        check_range(where, what, value, 0, 1);
-    check_range(where, "specular_color", material.specular_color, 0, 1);
-    check_range(where, "coat_color", material.coat_color, 0, 1);
-    check_range(where, "fuzz_color", material.fuzz_color, 0, 1);
-    check_range(where, "coat_ior", material.coat_ior, 1, kHuge);
     check_range(where, "scale of normal_texture", material.normal_scale, 0, kMaxNormalScale);
     check_input_textures(material, where);
     visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {

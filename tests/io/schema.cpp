@@ -60,7 +60,7 @@ TEST(Schema, knows_the_keys_that_the_reader_knows) {
     expect_keys("/properties/render", scene_keys::kPicture);
     expect_keys("/properties/camera", scene_keys::kCamera);
     expect_keys("/properties/environment", scene_keys::kEnvironment);
-    expect_keys("/properties/materials/additionalProperties", scene_keys::kMaterial);
+    expect_keys("/properties/materials/additionalProperties", list_material_keys());
     expect_keys("/properties/displacements/additionalProperties", scene_keys::kDisplacement);
     expect_keys("/properties/materials/additionalProperties/properties/base_color_texture/oneOf/1",
                 scene_keys::kColorTexture);

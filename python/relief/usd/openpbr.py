@@ -2,18 +2,20 @@
 from __future__ import annotations
 
 import numpy as np
+import relief
 from pxr import UsdShade
 
 from .material_keys import KeySetter
 from .shading import Network, is_texture, spread
 
-# name of OpenPBR: (its default, kind, reader's range)
-NUMBERS = {"base_weight": 1.0, "base_diffuse_roughness": 0.0, "base_metalness": 0.0, "specular_weight": 1.0,
-           "specular_roughness": 0.3, "coat_weight": 0.0, "coat_roughness": 0.0, "coat_darkening": 1.0,
-           "fuzz_weight": 0.0, "fuzz_roughness": 0.5, "transmission_weight": 0.0}
-COLORS = {"base_color": 0.8, "specular_color": 1.0, "coat_color": 1.0, "fuzz_color": 1.0, "transmission_color": 1.0}
-PLAIN = {"specular_ior": 1.5, "coat_ior": 1.6}
-ANISOTROPY = ("specular_roughness_anisotropy", "coat_roughness_anisotropy")
+# Emission, opacity and the inside of glass are read by functions of their own.
+ROWS = [row for row in relief.material_inputs() if not row["name"].startswith(("emission_", "geometry_"))]
+# The defaults of OpenPBR's inputs by name; Relief has another roughness.
+NUMBERS = {**{row["name"]: row["default"] for row in ROWS if row["type"] == "number" and row["is_textured"]},
+           "specular_roughness": 0.3}
+COLORS = {row["name"]: row["default"][0] for row in ROWS if row["type"] == "color"}
+ANISOTROPY = tuple(row["name"] for row in ROWS if row["name"].endswith("_anisotropy"))
+PLAIN = {row["name"]: row["default"] for row in ROWS if row["type"] == "number" and row["low"] == 1}
 # Inputs of no effect at their values here, that Relief does not have.
 MISSING = {"subsurface_weight": 0.0, "thin_film_weight": 0.0, "transmission_dispersion_scale": 0.0}
 # Names of the standard surface for those of OpenPBR; values where they differ by default.

@@ -1,16 +1,13 @@
 """Materials as OpenPBR (MaterialX) and, for programs that do not know it, as UsdPreviewSurface."""
 from __future__ import annotations
 
+import relief
 from pxr import Gf, Sdf, UsdShade
 
-ALIASES = {"roughness": "specular_roughness", "metallic": "base_metalness", "ior": "specular_ior", "opacity": "geometry_opacity",
-           "base_color_texture": "base_color", "roughness_texture": "specular_roughness", "metallic_texture": "base_metalness",
-           "opacity_texture": "geometry_opacity", "normal_texture": "geometry_normal"}
-NUMBERS = ("base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight", "specular_roughness", "specular_ior",
-           "coat_weight", "coat_roughness", "coat_ior", "coat_darkening", "fuzz_weight", "fuzz_roughness",
-           "transmission_weight", "transmission_depth", "geometry_opacity", "emission_luminance", "specular_roughness_anisotropy",
-           "coat_roughness_anisotropy")
-COLORS = ("base_color", "specular_color", "coat_color", "fuzz_color", "transmission_color", "emission_color")
+INPUTS = relief.material_inputs()
+ALIASES = {row[key]: row["name"] for row in INPUTS for key in ("alias", "texture_key") if row[key] and row[key] != "emission"}
+NUMBERS = tuple(row["name"] for row in INPUTS if row["type"] == "number")
+COLORS = tuple(row["name"] for row in INPUTS if row["type"] == "color")
 # Where Relief's default is not OpenPBR's, and what the surface for previews takes.
 DEFAULTS = {"specular_roughness": 0.5, "base_color": [0.8, 0.8, 0.8]}
 PREVIEW = {"base_color": "diffuseColor", "base_metalness": "metallic", "specular_roughness": "roughness", "specular_ior": "ior",

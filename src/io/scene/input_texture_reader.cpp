@@ -82,14 +82,14 @@ void read_one(const JsonNode& node, const MaterialInputKind& kind, AssetCache& a
     for (const char* key : {kind.name, kind.alias}) {
         const auto found = key ? node.find(key) : std::nullopt;
         if (!found || !found->is_object() || kind.input == MaterialInput::normal) continue;
-        if (kind.own_texture && node.find(kind.own_texture))
-            found->fail(fmt::format("has a texture twice: '{}' is there too", kind.own_texture),
+        if (kind.texture_key && node.find(kind.texture_key))
+            found->fail(fmt::format("has a texture twice: '{}' is there too", kind.texture_key),
                         "leave one of the two out");
         material.textures.push_back(read_input_texture(*found, kind, false, assets));
         return;
     }
-    if (!kind.own_texture) return;
-    for (const char* key : {kind.own_texture, kind.input == MaterialInput::normal ? kind.name : nullptr}) {
+    if (!kind.texture_key) return;
+    for (const char* key : {kind.texture_key, kind.input == MaterialInput::normal ? kind.name : nullptr}) {
         const auto found = key ? node.find(key) : std::nullopt;
         if (!found || !is_placed_texture(*found)) continue;
         material.textures.push_back(read_input_texture(*found, kind, true, assets));
@@ -110,17 +110,6 @@ bool is_placed_texture(const JsonNode& texture) {
     if (file && file->is_string() && has_tile_token(file->as_string())) return true;
     return texture.find("wrap") || texture.find("uv_scale") || texture.find("uv_offset") ||
            texture.find("uv_set");
-}
-
-void refuse_input_textures(const JsonNode& node) {
-    constexpr std::pair<const char*, const char*> kReasons[] = {
-        {"ior", "texture specular_weight, which scales the same reflection"},
-        {"specular_ior", "texture specular_weight, which scales the same reflection"},
-        {"coat_ior", "texture coat_weight, which scales the same reflection"},
-        {"transmission_depth", "it is of the inside of a body, where there are no uvs"}};
-    for (const auto& [key, reason] : kReasons)
-        if (const auto found = node.find(key); found && found->is_object())
-            found->fail("takes a number and no texture", reason);
 }
 
 std::string read_picture_file(const JsonNode& node, AssetCache& assets) {

@@ -14,9 +14,6 @@ void read_input_textures(const JsonNode& node, AssetCache& assets, Material& mat
 /// Whether the texture of a key of today's, `*_texture`, is one that read_input_textures reads.
 bool is_placed_texture(const JsonNode& texture);
 
-/// The inputs of a material that a texture cannot drive, refused with the reason.
-void refuse_input_textures(const JsonNode& node);
-
 /// The name of the picture that `node` has under "file", with the layer and part that it names.
 std::string read_picture_file(const JsonNode& node, AssetCache& assets);
 

@@ -1,4 +1,5 @@
-// Keys of each section of a scene file. docs/scene.schema.json has the same ones, as a test checks.
+// Keys of each section of a scene file except materials (relief/material_inputs.h). docs/scene.schema.json
+// has the same ones, as a test checks.
 #pragma once
 
 #include <array>
@@ -18,14 +19,6 @@ inline constexpr auto kCamera =
     make_keys("from", "to", "up", "fov_degrees", "aperture_radius", "focus_distance", "shift", "shutter");
 inline constexpr auto kEnvironment =
     make_keys("file", "layer", "part", "color_space", "color", "strength", "rotate_degrees", "light_group");
-inline constexpr auto kMaterial = make_keys(
-    "base_color", "base_color_texture", "roughness", "roughness_texture", "metallic", "metallic_texture",
-    "ior", "emission", "base_weight", "base_diffuse_roughness", "base_metalness", "specular_weight",
-    "specular_color", "specular_roughness", "specular_roughness_anisotropy", "specular_ior", "coat_weight",
-    "coat_color", "coat_roughness", "coat_roughness_anisotropy", "coat_ior", "coat_darkening", "fuzz_weight",
-    "fuzz_color", "fuzz_roughness", "emission_luminance", "emission_color", "opacity", "geometry_opacity",
-    "opacity_texture", "normal_texture", "geometry_normal", "transmission_weight", "transmission_color",
-    "transmission_depth", "geometry_thin_walled", "light_group");
 /// Inputs of OpenPBR 1.1 that are refused by name.
 inline constexpr auto kMaterialLacks =
     make_keys("subsurface_weight", "subsurface_color", "subsurface_radius", "subsurface_radius_scale",

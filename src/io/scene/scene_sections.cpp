@@ -10,6 +10,7 @@
 #include "io/scene/input_texture_reader.h"
 #include "io/scene/scene_keys.h"
 #include "math/affine.h"
+#include "relief/material_inputs.h"
 #include "relief/shot.h"
 #include "scene/displacement_conventions.h"
 
@@ -282,83 +283,56 @@ Environment read_environment(const JsonNode& node, AssetCache& assets) {
 
 namespace {
 
-/// The number that a texture multiplies is in its object.
-void read_factor(const JsonNode& node, std::string_view key, float& value) {
-    const auto found = node.find(key);
-    if (!found || !found->is_object()) return read_float(node, key, value, 0, 1);
-    value = 1;
-    read_float(*found, "factor", value, 0, 1);
+/// Reads a number, or the factor of the texture that replaces it.
+float read_factor(const JsonNode& value, float low, float high) {
+    if (!value.is_object()) return value.as_float(low, high);
+    const auto factor = value.find("factor");
+    return factor ? factor->as_float(low, high) : 1;
 }
 
-void read_color_factor(const JsonNode& node, std::string_view key, Vec3f& value, double high = 1) {
-    const auto found = node.find(key);
-    if (!found || !found->is_object()) return read_vec3(node, key, value, 0, high);
-    value = {1, 1, 1};
-    const auto factor = found->find("factor");
-    if (factor && factor->is_array()) value = factor->as_vec3(0, high);
-    if (factor && !factor->is_array()) value = value * factor->as_float(0, high);
+Vec3f read_color_factor(const JsonNode& value, float low, float high) {
+    if (!value.is_object()) return value.as_vec3(low, high);
+    const auto factor = value.find("factor");
+    if (!factor) return {1, 1, 1};
+    return factor->is_array() ? factor->as_vec3(low, high) : Vec3f{1, 1, 1} * factor->as_float(low, high);
 }
 
-/// The key under one of two names.
-const char* choose_key(const JsonNode& node, const char* key, const char* open_pbr) {
-    const auto other = node.find(open_pbr);
-    if (other && node.find(key))
-        other->fail(fmt::format("means the same as '{}', which is there too", key),
+/// Returns the node of an input under its name or its alias, not both.
+std::optional<JsonNode> find_value(const JsonNode& node, const char* name, const char* alias) {
+    const auto found = node.find(name), other = alias ? node.find(alias) : std::nullopt;
+    if (found && other)
+        found->fail(fmt::format("means the same as '{}', which is there too", alias),
                     "leave one of the two out");
-    return other ? open_pbr : key;
+    return found ? found : other;
 }
 
+void read_input(const JsonNode& node, const MaterialInputKind& kind, Material& material) {
+    const auto value = find_value(node, kind.name, kind.alias);
+    if (!value) return;
+    if (kind.texture_hint && value->is_object()) value->fail("cannot have a texture", kind.texture_hint);
+    if (kind.number) material.*kind.number = read_factor(*value, kind.low, kind.high);
+    if (kind.color) material.*kind.color = read_color_factor(*value, kind.low, kind.high);
+    if (kind.flag) material.*kind.flag = value->as_bool();
+}
+
+/// Reads the radiance: `emission`, or the product of the other two.
 void read_emission(const JsonNode& node, Vec3f& emission) {
-    choose_key(node, "emission", "emission_luminance");
-    choose_key(node, "emission", "emission_color");
-    read_color_factor(node, "emission", emission, FLT_MAX);
+    find_value(node, "emission_luminance", "emission");
+    if (const auto radiance = find_value(node, "emission_color", "emission");
+        radiance && node.find("emission"))
+        emission = read_color_factor(*radiance, 0, kUnboundedInput);
     const auto color = node.find("emission_color");
     const auto luminance = node.find("emission_luminance");
     if (color && !luminance)
         color->fail("is multiplied by emission_luminance, which is not there", "give both, or 'emission'");
     if (!luminance) return;
-    Vec3f scale{1, 1, 1};
-    read_color_factor(node, "emission_color", scale);
-    float factor = 1;
-    if (luminance->is_object())
-        read_float(*luminance, "factor", factor, 0);
-    else
-        factor = luminance->as_float(0);
-    emission = scale * factor;
-}
-
-void read_anisotropy(const JsonNode& node, std::string_view key, float& value) {
-    if (const auto found = node.find(key); found && found->is_object())
-        found->fail("cannot have a texture", "give it as a number; the roughness itself may have one");
-    read_float(node, key, value, 0, 1);
-}
-
-void read_layers(const JsonNode& node, Material& material) {
-    for (const auto& [key, value] : {std::pair("base_weight", &material.base_weight),
-                                     std::pair("base_diffuse_roughness", &material.base_diffuse_roughness),
-                                     std::pair("specular_weight", &material.specular_weight),
-                                     std::pair("coat_weight", &material.coat_weight),
-                                     std::pair("coat_roughness", &material.coat_roughness),
-                                     std::pair("coat_darkening", &material.coat_darkening),
-                                     std::pair("fuzz_weight", &material.fuzz_weight),
-                                     std::pair("transmission_weight", &material.transmission_weight),
-                                     std::pair("fuzz_roughness", &material.fuzz_roughness)})
-        read_factor(node, key, *value);
-    read_color_factor(node, "specular_color", material.specular_color);
-    read_color_factor(node, "coat_color", material.coat_color);
-    read_color_factor(node, "fuzz_color", material.fuzz_color);
-    read_float(node, "coat_ior", material.coat_ior, 1);
-    read_anisotropy(node, "specular_roughness_anisotropy", material.specular_roughness_anisotropy);
-    read_anisotropy(node, "coat_roughness_anisotropy", material.coat_roughness_anisotropy);
-    read_color_factor(node, "transmission_color", material.transmission_color);
-    read_float(node, "transmission_depth", material.transmission_depth, 0);
-    read_optional(node, "geometry_thin_walled", material.is_thin_walled,
-                  [](const JsonNode& n) { return n.as_bool(); });
+    const Vec3f scale = color ? read_color_factor(*color, 0, 1) : Vec3f{1, 1, 1};
+    emission = scale * read_factor(*luminance, 0, kUnboundedInput);
 }
 
 void read_normal_texture(const JsonNode& node, AssetCache& assets, Material& material) {
-    const char* key = choose_key(node, "normal_texture", "geometry_normal");
-    const auto found = node.find(key);
+    const auto found = find_value(node, "geometry_normal", "normal_texture");
+    const char* key = node.find("geometry_normal") ? "geometry_normal" : "normal_texture";
     if (found && !is_placed_texture(*found))
         read_filtered_texture(node, key, TextureUse::vector, assets)
             .move_to(material.normal_texture, material.normal_filter);
@@ -374,18 +348,13 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
         if (const auto found = node.find(key))
             found->fail("this input of OpenPBR is not rendered",
                         "leave it out; docs/decisions/openpbr.md lists what is");
-    node.check_keys(scene_keys::kMaterial);
-    refuse_input_textures(node);
+    node.check_keys(list_material_keys());
     Material material;
     material.name = name;
-    read_color_factor(node, "base_color", material.base_color);
-    read_factor(node, choose_key(node, "roughness", "specular_roughness"), material.roughness);
-    read_factor(node, choose_key(node, "metallic", "base_metalness"), material.metallic);
-    read_float(node, choose_key(node, "ior", "specular_ior"), material.ior, 1);
-    read_factor(node, choose_key(node, "opacity", "geometry_opacity"), material.opacity);
+    for (const MaterialInputKind& kind : list_material_fields())
+        if (!kind.is_emission()) read_input(node, kind, material);
     read_emission(node, material.emission);
     read_light_group(node, material.light_group);
-    read_layers(node, material);
     visit_own_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
         if (&texture == &material.normal_texture) return read_normal_texture(node, assets, material);
         if (const auto found = node.find(key); found && is_placed_texture(*found)) return;

@@ -47,29 +47,17 @@ Json write_camera(const Camera& camera) {
     return node;
 }
 
-void write_layers(const Material& material, Json& node) {
+void write_inputs(const Material& material, Json& node) {
     const Material plain;
-    const auto write = [&](const char* key, const auto Material::*member) {
-        if (!(material.*member == plain.*member)) node[key] = to_json(material.*member);
+    const auto write = [&](const MaterialInputKind& kind, const auto Material::*member) {
+        if (kind.is_always_saved || !(material.*member == plain.*member))
+            node[kind.short_name()] = to_json(material.*member);
     };
-    write("base_weight", &Material::base_weight);
-    write("base_diffuse_roughness", &Material::base_diffuse_roughness);
-    write("specular_weight", &Material::specular_weight);
-    write("specular_color", &Material::specular_color);
-    write("specular_roughness_anisotropy", &Material::specular_roughness_anisotropy);
-    write("coat_weight", &Material::coat_weight);
-    write("coat_color", &Material::coat_color);
-    write("coat_roughness", &Material::coat_roughness);
-    write("coat_roughness_anisotropy", &Material::coat_roughness_anisotropy);
-    write("coat_ior", &Material::coat_ior);
-    write("coat_darkening", &Material::coat_darkening);
-    write("fuzz_weight", &Material::fuzz_weight);
-    write("fuzz_color", &Material::fuzz_color);
-    write("fuzz_roughness", &Material::fuzz_roughness);
-    write("transmission_weight", &Material::transmission_weight);
-    write("transmission_color", &Material::transmission_color);
-    write("transmission_depth", &Material::transmission_depth);
-    if (material.is_thin_walled) node["geometry_thin_walled"] = true;
+    for (const MaterialInputKind& kind : list_material_fields()) {
+        if (kind.number) write(kind, kind.number);
+        if (kind.color && !kind.is_emission()) write(kind, kind.color);
+        if (kind.flag && material.*kind.flag != plain.*kind.flag) node[kind.name] = material.*kind.flag;
+    }
 }
 
 Json write_placement(const InputTexture& texture) {

@@ -16,9 +16,9 @@ Json write_picture(const PictureDefaults& picture);
 Json write_matrix(const Affine& matrix);
 Json write_camera(const Camera& camera);
 Json write_light(const Light& light);
-/// What of base, coat, fuzz and glass differs from a material that only has a base colour, roughness,
-/// metallic and ior.
-void write_layers(const Material& material, Json& node);
+/// Writes the numbers, colours and flags of a material, except its emission: those that differ from their
+/// defaults, and those that files always have.
+void write_inputs(const Material& material, Json& node);
 /// What a texture of Material::textures says beside its file and, unless it is one of normals, its factor.
 Json write_placement(const InputTexture& texture);
 /// What the emission of a material is multiplied by: into its keys, one of which may be a texture already.

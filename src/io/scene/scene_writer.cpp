@@ -188,13 +188,8 @@ class SceneWriter {
         for (const Material& material : scene_.materials) {
             material_names_.push_back(namer.make_unique(material.name));
             Json& node = root_["materials"][material_names_.back()];
-            node["base_color"] = to_json(material.base_color);
-            node["roughness"] = to_json(material.roughness);
-            node["metallic"] = to_json(material.metallic);
-            node["ior"] = to_json(material.ior);
+            write_inputs(material, node);
             if (!material.light_group.empty()) node["light_group"] = material.light_group;
-            if (material.opacity != 1) node["opacity"] = to_json(material.opacity);
-            write_layers(material, node);
             visit_own_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
                 std::string_view input(name, std::string_view(name).rfind('_')); // without "_texture"
                 if (input == "base_color") input = "color"; // files have had this name from the first
@@ -228,8 +223,8 @@ class SceneWriter {
     /// A texture in place of its number, which becomes its factor.
     void add_input(const Material& material, const InputTexture& texture, Json& node) {
         const MaterialInputKind& kind = get_input_kind(texture.input);
-        const bool is_emission = kind.color == &Material::emission;
-        Json& entry = node[kind.alias && !is_emission ? kind.alias : kind.name];
+        const bool is_emission = kind.is_emission();
+        Json& entry = node[is_emission ? kind.name : kind.short_name()];
         entry = {{"file", add_tiles(texture.tiles, texture.is_udim,
                                     fmt::format("{}_{}", material_names_.back(), kind.name))}};
         if (kind.number) entry["factor"] = to_json(material.*kind.number);
