@@ -19,6 +19,12 @@ namespace relief::python {
 
 namespace {
 
+nb::object make_list(const Vec3f& v) {
+    nb::list list;
+    for (const float value : {v.x, v.y, v.z}) list.append(value);
+    return list;
+}
+
 View read_view(const Argument& value) {
     constexpr std::array<std::string_view, 7> kViews = {"automatic", "front", "back",         "left",
                                                         "right",     "top",   "three-quarter"};
@@ -69,12 +75,6 @@ void read_option(const std::string& name, nb::handle given, AimOptions& aim) {
 }
 
 } // namespace
-
-nb::object make_list(const Vec3f& v) {
-    nb::list list;
-    for (const float value : {v.x, v.y, v.z}) list.append(value);
-    return list;
-}
 
 nb::dict describe_camera(const Camera& camera) {
     nb::dict node;

@@ -10,8 +10,6 @@
 
 namespace relief::python {
 
-/// Returns a list of x, y and z.
-nanobind::object make_list(const Vec3f& v);
 nanobind::dict describe_camera(const Camera& camera);
 /// All but its picture.
 nanobind::dict describe_environment(const Environment& environment);

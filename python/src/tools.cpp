@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -21,7 +22,6 @@
 #include "relief/inspect.h"
 #include "relief/io.h"
 #include "relief/material_inputs.h"
-#include "scene_values.h"
 #include "scenes.h"
 #include "settings.h"
 #include "textures.h"
@@ -196,12 +196,19 @@ const char* get_type(const MaterialInputKind& kind) {
     return kind.number || kind.is_emission() ? "number" : "normal";
 }
 
+/// Returns the number whose shortest decimals are those of the float: 1.6, not 1.600000023841858.
+double to_decimal(float value) { return std::stod(fmt::format("{}", value)); }
+
 nb::object get_default(const MaterialInputKind& kind) {
     const Material plain;
     if (kind.flag) return nb::cast(plain.*kind.flag);
-    if (kind.number) return nb::cast(plain.*kind.number);
-    if (kind.input == MaterialInput::emission_luminance) return nb::cast(plain.emission.x);
-    return kind.color ? make_list(plain.*kind.color) : nb::object(nb::none());
+    if (kind.number) return nb::cast(to_decimal(plain.*kind.number));
+    if (kind.input == MaterialInput::emission_luminance) return nb::cast(to_decimal(plain.emission.x));
+    if (!kind.color) return nb::none();
+    const Vec3f color = plain.*kind.color;
+    nb::list parts;
+    for (const float part : {color.x, color.y, color.z}) parts.append(to_decimal(part));
+    return parts;
 }
 
 nb::list list_inputs() {

@@ -122,5 +122,29 @@ class PackageTest(unittest.TestCase):
         self.assertIsInstance(relief.devices(), list)
 
 
+class MaterialInputsTest(unittest.TestCase):
+    def test_inputs_have_the_keys_ranges_and_defaults_of_materials(self):
+        inputs = {row["name"]: row for row in relief.material_inputs()}
+        self.assertEqual(inputs["coat_ior"]["default"], 1.6)
+        self.assertEqual((inputs["coat_ior"]["low"], inputs["coat_ior"]["high"]), (1, float("inf")))
+        self.assertEqual(inputs["base_color"]["default"], [0.8, 0.8, 0.8])
+        self.assertEqual(inputs["specular_roughness"]["alias"], "roughness")
+        for row in inputs.values():
+            self.assertTrue(row["meaning"].endswith("."), row["name"])
+            if row["type"] == "normal":
+                continue
+            for key in filter(None, (row["name"], row["alias"])):
+                scene = scenes.make_scene()
+                value = row["default"]
+                scene.materials["m"] = relief.Material(**{key: value})
+                if key == "emission_color":
+                    scene.materials["m"]["emission_luminance"] = 1
+                scene.validate()
+                if row["type"] == "number":
+                    scene.materials["m"][key] = row["low"] - 1
+                    with self.assertRaisesRegex(relief.Error, f"materials.m.{key}: must be"):
+                        scene.validate()
+
+
 if __name__ == "__main__":
     unittest.main()
