@@ -226,6 +226,7 @@ TEST_F(Conventions, tiles_are_found_by_the_names_of_every_program) {
         return numbers;
     };
     EXPECT_EQ(get_tiles("zb-VD<UDIM>.exr"), (std::vector{1001, 1012}));
+    EXPECT_EQ(get_tiles("zb-VD<udim>.exr"), (std::vector{1001, 1012}));
     EXPECT_EQ(get_tiles("m_vdm.<UDIM>.exr"), (std::vector{1001, 1002}));
     EXPECT_EQ(get_tiles("mud_<UVTILE>.exr"), (std::vector{1001, 1022}));
     EXPECT_EQ(get_tiles("old_<uvtile>.exr"), (std::vector{1001, 1020}));

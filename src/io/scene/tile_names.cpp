@@ -60,12 +60,15 @@ struct TileToken {
     std::optional<int> (*read)(std::string_view);
     std::string (*format)(int);
 };
-constexpr std::array<TileToken, 3> kTokens = {
-    {{"<UDIM>", read_udim, [](int udim) { return fmt::format("{}", udim); }},
+std::string format_udim(int udim) { return fmt::format("{}", udim); }
+
+constexpr std::array<TileToken, 4> kTokens = {
+    {{"<UDIM>", read_udim, format_udim},
      {"<UVTILE>", [](std::string_view text) { return read_columns(text, 1); },
       [](int udim) { return format_columns(udim, 1); }},
      {"<uvtile>", [](std::string_view text) { return read_columns(text, 0); },
-      [](int udim) { return format_columns(udim, 0); }}}};
+      [](int udim) { return format_columns(udim, 0); }},
+     {"<udim>", read_udim, format_udim}}};
 
 const TileToken* find_token(const std::string& name) {
     for (const TileToken& token : kTokens)
