@@ -3,9 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -64,14 +67,35 @@ void print_warnings(const ConvertOptions& options, const std::vector<std::string
     cli::print_warnings(warnings, get_kind(options.input) != FileKind::scene);
 }
 
-/// Prints the doubts that a render of the scene would print about its maps, and no other warnings of the
-/// scene.
-void print_doubts(const ConvertOptions& options, Scene scene, WorkProgress* progress = nullptr) {
-    scene.warnings.clear();
-    add_assumption_warnings(scene, options.progress.is_quiet, get_kind(options.input) != FileKind::scene);
-    for (std::string& warning : find_seam_warnings(scene)) scene.warnings.push_back(std::move(warning));
-    for (std::string& warning : find_tile_warnings(scene)) scene.warnings.push_back(std::move(warning));
-    print_warnings(options, scene.warnings, progress);
+/// Prints the doubts that a render would print about the maps of a scene, and no other warnings of it. A
+/// scene that no render takes is converted nevertheless, as far as that needs no render. `has_mesh`: seams
+/// and tiles count.
+void print_doubts(const ConvertOptions& options, const std::function<Scene()>& make_scene, bool has_mesh,
+                  WorkProgress* progress = nullptr) {
+    if (options.progress.is_quiet) return;
+    if (progress) progress->end_line();
+    std::vector<std::string> warnings;
+    try {
+        Scene scene = make_scene();
+        scene.warnings.clear();
+        add_assumption_warnings(scene, false, get_kind(options.input) != FileKind::scene);
+        warnings = std::move(scene.warnings);
+        if (has_mesh) {
+            std::ranges::move(find_tile_warnings(scene), std::back_inserter(warnings));
+            std::ranges::move(find_seam_warnings(scene), std::back_inserter(warnings));
+        }
+    } catch (const Error&) { // the conversion reports what it cannot do itself
+    }
+    print_warnings(options, warnings, progress);
+}
+
+/// Prints doubts about a map without its mesh, which is tried on a plane.
+void print_doubts(const ConvertOptions& options, Displacement map) {
+    map.is_udim = false;
+    map.tiles.resize(std::min<size_t>(map.tiles.size(), 1));
+    if (map.frame == FrameKind::file) map.frame = FrameKind::mikk; // the plane has no tangents
+    print_doubts(
+        options, [&] { return make_map_scene(map); }, false);
 }
 
 std::string format_factors(const Vec3f& v) {
@@ -157,7 +181,11 @@ int convert_map_file(const ConvertOptions& options) {
     }
     print_warnings(options, warnings);
     warnings.clear();
-    print_doubts(options, mesh ? make_mesh_scene(*mesh, &from) : make_map_scene(from));
+    if (mesh)
+        print_doubts(
+            options, [&] { return make_mesh_scene(*mesh, &from); }, true);
+    else
+        print_doubts(options, from);
     WorkProgress progress(options.progress);
     progress.tell(kBeforeConversion);
     const MapSamples samples = choose_samples(options, from);
@@ -223,7 +251,8 @@ int convert_surface(const ConvertOptions& options) {
     progress.tell(kBeforeConversion);
     keep_files(list_files(scene), options.output);
     print_warnings(options, scene.warnings, &progress);
-    print_doubts(options, scene, &progress);
+    print_doubts(
+        options, [&] { return scene; }, true, &progress);
     const Mesh mesh = make_displaced_mesh(scene, options.level.value_or(kUsualLevel),
                                           progress.part(kBeforeConversion, kConverted));
     write_mesh(mesh, options.output, progress.part(kConverted, 1));

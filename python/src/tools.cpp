@@ -1,4 +1,5 @@
 // What scenes, meshes and maps are; maps in other conventions; what this machine and this build offer.
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -197,7 +198,12 @@ const char* get_type(const MaterialInputKind& kind) {
 }
 
 /// Returns the number whose shortest decimals are those of the float: 1.6, not 1.600000023841858.
-double to_decimal(float value) { return std::stod(fmt::format("{}", value)); }
+double to_decimal(float value) {
+    const std::string text = fmt::format("{}", value);
+    double decimal = 0;
+    std::from_chars(text.data(), text.data() + text.size(), decimal);
+    return decimal;
+}
 
 nb::object get_default(const MaterialInputKind& kind) {
     const Material plain;
@@ -205,7 +211,8 @@ nb::object get_default(const MaterialInputKind& kind) {
     if (kind.number) return nb::cast(to_decimal(plain.*kind.number));
     if (kind.input == MaterialInput::emission_luminance) return nb::cast(to_decimal(plain.emission.x));
     if (!kind.color) return nb::none();
-    const Vec3f color = plain.*kind.color;
+    // Without a luminance the product is black, and the colour itself is white.
+    const Vec3f color = kind.is_emission() ? Vec3f{1, 1, 1} : plain.*kind.color;
     nb::list parts;
     for (const float part : {color.x, color.y, color.z}) parts.append(to_decimal(part));
     return parts;

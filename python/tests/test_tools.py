@@ -140,10 +140,15 @@ class MaterialInputsTest(unittest.TestCase):
                 if key == "emission_color":
                     scene.materials["m"]["emission_luminance"] = 1
                 scene.validate()
-                if row["type"] == "number":
-                    scene.materials["m"][key] = row["low"] - 1
-                    with self.assertRaisesRegex(relief.Error, f"materials.m.{key}: must be"):
+                if row["type"] in ("number", "color") and key != "emission":
+                    below = row["low"] - 1
+                    scene.materials["m"][key] = below if row["type"] == "number" else [below] * 3
+                    with self.assertRaisesRegex(relief.Error, f"materials.m.{key}.*must be"):
                         scene.validate()
+                    if row["type"] == "color":
+                        scene.materials["m"][key] = [row["high"] + 1] * 3
+                        with self.assertRaisesRegex(relief.Error, f"materials.m.{key}.*must be"):
+                            scene.validate()
 
 
 if __name__ == "__main__":

@@ -224,10 +224,17 @@ void guess_space_by_normals(const MapSamples& samples, const MapStatistics& stat
                                     tangent, object)};
 }
 
-/// Nothing where the mesh and the map do not go together; inspection of the mesh says why.
+/// Returns the displaced surface, which a subdivided mesh has with one patch per quad: finer ones take many
+/// times longer and show no other convention. Returns null if the mesh and the map do not go together; the
+/// inspection of the mesh reports why.
 std::optional<Surface> try_surface(const Mesh& mesh, const Displacement& map) {
+    const bool is_automatic =
+        mesh.subdivision.scheme != SubdivisionScheme::none && mesh.subdivision.level == kAutoSubdivisionLevel;
     try {
-        return make_surface(mesh, &map, {});
+        if (!is_automatic) return make_surface(mesh, &map, {});
+        Mesh coarse = mesh;
+        coarse.subdivision.level = 0;
+        return make_surface(coarse, &map, {});
     } catch (const Error&) {
         return std::nullopt;
     }

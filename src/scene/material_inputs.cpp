@@ -145,7 +145,6 @@ constexpr MaterialInputKind kFields[] = {
     {.name = "emission_color",
      .alias = "emission",
      .color = &Material::emission,
-     .high = kUnboundedInput,
      .input = emission,
      .meaning = "Colour of the emission, in [0, 1], beside `emission_luminance`. `emission` is the radiance "
                 "itself."},

@@ -219,7 +219,8 @@ void check_displacement(const Displacement& map, size_t index) {
 void check_inputs(const Material& material, const std::string& where) {
     for (const MaterialInputKind& kind : list_material_fields()) {
         if (kind.number) check_range(where, kind.short_name(), material.*kind.number, kind.low, kind.high);
-        if (kind.is_color()) check_range(where, kind.short_name(), material.*kind.color, kind.low, kind.high);
+        const float high = kind.is_emission() ? kUnboundedInput : kind.high; // the member is the product
+        if (kind.is_color()) check_range(where, kind.short_name(), material.*kind.color, kind.low, high);
     }
 }
 

@@ -73,6 +73,22 @@ TEST_F(Warnings, of_a_map_are_those_of_convert_too) {
     }
 }
 
+TEST_F(Warnings, of_convert_neither_refuse_a_map_nor_speak_of_tiles_without_a_mesh) {
+    for (const char* tile : {"t.1002.exr", "t.1003.exr"})
+        std::filesystem::copy(folder_ / "bump.exr", folder_ / tile);
+    const CommandResult tiles =
+        run({"convert", "t.<UDIM>.exr", "--from", "genvdm", "--to", "mudbox", "-o", "o.<UDIM>.exr"});
+    EXPECT_EQ(tiles.exit_code, 0) << tiles.errors;
+    EXPECT_FALSE(contains(tiles.errors, "tile")) << tiles.errors;
+    write("bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    const CommandResult bare = run(
+        {"convert", "bump.exr", "--mesh", "bare.obj", "--from", "genvdm", "--to", "mudbox", "-o", "p.exr"});
+    EXPECT_EQ(bare.exit_code, 0) << bare.errors;
+    const CommandResult framed = run(
+        {"convert", "bump.exr", "--frame", "file", "--axes", "t,b,n", "--to-axes", "t,n,b", "-o", "q.exr"});
+    EXPECT_EQ(framed.exit_code, 0) << framed.errors;
+}
+
 TEST_F(Warnings, axes_that_the_values_contradict_name_the_option) {
     expect_warning({"--vdm", "swapped.exr"}, "set --axes to an order with G along n: the values do not show "
                                              "which of the other two is along t (presets mudbox");

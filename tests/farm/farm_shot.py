@@ -74,12 +74,11 @@ def choose_victims(seed=29):
 
 
 def disturb_unfinished(job, task, who, disturb):
-    """Calls disturb(process), which says whether it met, for the process of an attempt, unless the film of its task is in
-    place by then. Whether the process was met.
+    """Calls disturb(process) for the process of an attempt if the film of its task is not in place yet.
 
-    The process is stopped before: otherwise it could finish between the question and the kill. It goes on where it was not met;
-    who requeues a process leaves it to Slurm to continue it, together with the signal that ends it.
-    """
+    The process is stopped first, so that it cannot finish meanwhile. If `disturb` returns false, the process continues.
+    Otherwise it stays stopped until the kill, or until Slurm continues it with the signal that ends it.
+    Returns whether the process was disturbed."""
     process = int(who.split("-")[1])
     if not send_signal(process, signal.SIGSTOP):
         return False  # it has just ended

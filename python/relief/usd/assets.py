@@ -8,7 +8,7 @@ from pxr import Ar, Usd, UsdShade
 
 from .context import Context
 
-TOKENS = ("<UDIM>", "<UVTILE>", "<uvtile>")
+TOKENS = ("<UDIM>", "<UVTILE>", "<uvtile>", "<udim>")
 
 
 def find_layer(attribute: Usd.Attribute, time: Usd.TimeCode):

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .assets import has_alpha
+from .assets import TOKENS, has_alpha
 from .shading import Network, Texture, is_texture, spread
 
 
@@ -72,7 +72,7 @@ class KeySetter:
         """Where a texture lies: the keys that all textures have."""
         keys = {"file": texture.file, **texture.keys}
         self.placed.append((keys, texture.place.uvs))
-        if texture.wrap != "repeat" and not any(token in texture.file for token in ("<UDIM>", "<UVTILE>", "<uvtile>")):
+        if texture.wrap != "repeat" and not any(token in texture.file for token in TOKENS):
             keys["wrap"] = texture.wrap
         if not np.array_equal(texture.place.scale, [1, 1]):
             keys["uv_scale"] = [float(x) for x in texture.place.scale]

@@ -13,7 +13,7 @@ from relief import _relief
 from .context import Context
 
 TOKEN = "<UDIM>"
-OTHER_TOKENS = ("<UVTILE>", "<uvtile>", "##")  # of names that Relief alone expands
+OTHER_TOKENS = ("<UVTILE>", "<uvtile>", "<udim>", "##")  # of names that Relief alone expands
 
 
 def read_picture(file: str):

@@ -52,7 +52,8 @@ std::string find_png_color_tag(std::istream& stream) {
     while (stream.read(head.data(), 8)) {
         const std::string_view kind(head.data() + 4, 4);
         if (kind == "IDAT") break; // those chunks stand before the pixels
-        if (kind == "sRGB" || kind == "iCCP" || kind == "cHRM") return std::string(kind) + " chunk";
+        if (kind == "sRGB" || kind == "iCCP") return std::string(kind) + " chunk";
+        if (kind == "cHRM" && tag.empty()) tag = "cHRM chunk";
         if (kind == "gAMA") tag = is_gamma_of_colors(stream) ? "gAMA chunk" : kLinearTag;
         position += 8 + read_uint32(head.data()) + kChecksumBytes;
         stream.seekg(std::streamoff(position));

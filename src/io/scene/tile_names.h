@@ -11,7 +11,8 @@ namespace relief {
 /// Throws Error{bad_input} where a name with a star is no file: tiles and frames are named otherwise.
 void refuse_wildcard(const std::filesystem::path& file);
 
-/// True for a name with a tile token: <UDIM> or <udim> for 1001 ..., <UVTILE> for u1_v1 ..., <uvtile> for u0_v0 ...
+/// True for a name with a tile token: <UDIM> or <udim> for 1001 ..., <UVTILE> for u1_v1 ..., <uvtile> for
+/// u0_v0 ...
 bool has_tile_token(const std::string& file);
 
 /// The files that a name with a token stands for, numbered as UDIM does (1001 + u + 10 v), by rising number.
