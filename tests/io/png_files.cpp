@@ -136,11 +136,11 @@ TEST_F(PngFiles, take_little_memory_for_texts) {
     const auto read_peak = [] {
         std::ifstream status("/proc/self/status");
         for (std::string line; std::getline(status, line);)
-            if (line.starts_with("VmHWM:")) return std::stol(line.substr(6)); // KiB
-        return 0L;
+            if (line.starts_with("VmHWM:")) return std::stoul(line.substr(6)); // KiB
+        return 0ul;
     };
     std::ofstream("/proc/self/clear_refs") << "5"; // the peak becomes the present size
-    const long before = read_peak();
+    const unsigned long before = read_peak();
     EXPECT_EQ(read_all(*open(bytes)).size(), 12u);
     EXPECT_LT(read_peak() - before, 200 * 1024); // the texts take 790 MB
 }
