@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "relief/material_inputs.h"
 #include "scene/displacement_conventions.h"
 #include "scene/words.h"
 
