@@ -139,8 +139,8 @@ class JpegSource final : public RowSource {
     void decode(const VisitRow& visit) override {
         if (is_read_) run([&] { jpeg_abort_decompress(&info_), read_header(); });
         is_read_ = true;
-        errors_.warning_count =
-            0; // those of the header change no pixel, except has_odd_colors, reported before
+        // Warnings of the header change no pixel, except has_odd_colors, which is reported with the header.
+        errors_.warning_count = 0;
         run([&] {
             info_.out_color_space = space_;
             jpeg_start_decompress(&info_);
