@@ -97,6 +97,8 @@ RELIEF_LANES_BINARY(min, Min)
 RELIEF_LANES_BINARY(max, Max)
 #undef RELIEF_LANES_BINARY
 
+template <size_t W> RELIEF_INLINE Lanes<W> magnitude(const Lanes<W>& a) { return max(a, Lanes<W>(0.0f) - a); }
+
 template <size_t W> RELIEF_INLINE Lanes<W> floor(const Lanes<W>& a) {
     RELIEF_RETURN_PARTS(Lanes<W>, hn::Floor(a.part[p]));
 }

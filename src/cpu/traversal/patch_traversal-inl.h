@@ -69,7 +69,7 @@ RELIEF_INLINE bool intersect_triangles(const PatchVisit& visit, const cpu::Patch
     TriangleTest<16> test;
     if (!test_edges(cx, cy, test)) return false;
     gather_corners(z, cz[0], cz[1], cz[2]);
-    if (!test_distances(cz, ray, test)) return false;
+    if (!test_distances(cx, cy, cz, ray, test)) return false;
     if constexpr (kQuery == Query::any) return true;
     offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
         locate_in_block(visit, tree, block, lane, weight_b, weight_c, hit);

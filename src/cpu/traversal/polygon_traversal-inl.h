@@ -37,7 +37,7 @@ RELIEF_INLINE bool intersect_triangles(const cpu::TriangleBlock& block, RayState
                        y[corner], z[corner]);
     TriangleTest<8> test;
     if (!test_edges(x, y, test)) return false;
-    if (!test_distances(z, ray, test)) return false;
+    if (!test_distances(x, y, z, ray, test)) return false;
     if constexpr (kQuery == Query::closest)
         offer_hits(ray, test, [&](uint32_t lane, float weight_b, float weight_c, cpu::TraceHit& hit) {
             hit.patch = block.triangle[lane] / 2;

@@ -105,8 +105,6 @@ RELIEF_INLINE void choose_axes(const Vec3f& forward, const Vec3f& along, RayBund
     bundle.up = cross(forward, bundle.right);
 }
 
-RELIEF_INLINE Lanes16 magnitude(const Lanes16& a) { return max(a, Lanes16(0.0f) - a); }
-
 /// Which lanes have |a| > |b|.
 RELIEF_INLINE LaneMask is_longer(const Lanes16& a, const Lanes16& b) {
     return less(magnitude(b), magnitude(a));

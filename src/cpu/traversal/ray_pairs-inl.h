@@ -199,7 +199,7 @@ RELIEF_INLINE bool test_pairs(const PairLanes<kValues>& pairs, const Lanes16 (&c
     pick(0, x), pick(1, y), pick(2, z);
     test_edges(x, y, test);
     if (!(test.mask &= pairs.valid)) return false;
-    return find_places(z, test) != 0;
+    return find_places(x, y, z, test) != 0;
 }
 
 } // namespace relief::HWY_NAMESPACE

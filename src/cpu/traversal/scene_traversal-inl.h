@@ -39,7 +39,7 @@ template <Query kQuery> bool trace_polygon(const Surface& surface, uint32_t patc
     }
     TriangleTest<4> test;
     if (!(test_edges(x, y, test) & 3)) return false;
-    test_distances(z, ray, test);
+    test_distances(x, y, z, ray, test);
     test.mask &= quad.is_triangle() ? 1 : 3;
     if (!test.mask) return false;
     if constexpr (kQuery == Query::closest)

@@ -24,16 +24,79 @@ RELIEF_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3]
     return test.mask = same_side(test.u, test.v, test.w);
 }
 
-/// Places along the major axis, of which triangles without area have none.
-template <size_t W> RELIEF_INLINE LaneMask find_places(const Lanes<W> (&z)[3], TriangleTest<W>& test) {
-    const Lanes<W> sum = test.u + test.v + test.w;
-    test.t = (test.u * z[0] + test.v * z[1] + test.w * z[2]) / sum;
-    return test.mask &= not_equal(sum, Lanes<W>(0.0f));
+/// Triangles, of those that were hit, whose place rounding may have put on the wrong side of the ray's
+/// origin.
+template <size_t W>
+RELIEF_INLINE LaneMask find_doubtful_places(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3],
+                                            const Lanes<W> (&z)[3], const TriangleTest<W>& test) {
+    // The place is a mean of z: where no corner or all corners are behind the origin, its sign is right.
+    const LaneMask around_origin = test.mask & ~same_side(z[0], z[1], z[2]);
+    if (!around_origin) [[likely]]
+        return 0;
+    const auto find_size = [](const Lanes<W>(&of)[3]) {
+        return max(max(magnitude(of[0]), magnitude(of[1])), magnitude(of[2]));
+    };
+    // Four roundings of products as large as these two sizes are in each edge function. Each moves the mean
+    // by at most twice the largest z; the rest of the factor leaves room for the roundings of the mean
+    // itself.
+    constexpr float kRounding = 0x1p-19f;
+    const Lanes<W> products = find_size(x) * find_size(y), sum = magnitude(test.u + test.v + test.w);
+    return around_origin & less_equal(magnitude(test.t) * sum, products * find_size(z) * Lanes<W>(kRounding));
+}
+
+/// Corners as rays see them and edge functions of W triangles, in memory.
+template <size_t W> struct StoredEdges { alignas(64) float x[3][W], y[3][W], edge[3][W]; };
+
+/// Edge functions in double precision, where both products are exact. One that rounding had made zero, and
+/// that has the sign of an outside, stays zero.
+template <size_t W> HWY_NOINLINE void find_exact_edges(LaneMask lanes, StoredEdges<W>& stored) {
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = uint32_t(__builtin_ctz(lanes));
+        for (int k = 0; k < 3; ++k) {
+            const int from = (k + 2) % 3, to = (k + 1) % 3;
+            const double x[2] = {stored.x[from][lane], stored.x[to][lane]};
+            const double y[2] = {stored.y[from][lane], stored.y[to][lane]};
+            if (stored.edge[k][lane] != 0) stored.edge[k][lane] = float(x[0] * y[1] - y[0] * x[1]);
+        }
+    }
+}
+
+/// The same for lanes in registers, which go to memory here alone.
+template <size_t W>
+RELIEF_INLINE void find_exact_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], LaneMask lanes,
+                                    TriangleTest<W>& test) {
+    StoredEdges<W> stored;
+    for (int k = 0; k < 3; ++k) x[k].store(stored.x[k]), y[k].store(stored.y[k]);
+    test.u.store(stored.edge[0]), test.v.store(stored.edge[1]), test.w.store(stored.edge[2]);
+    find_exact_edges(lanes, stored);
+    test.u = Lanes<W>::load(stored.edge[0]), test.v = Lanes<W>::load(stored.edge[1]);
+    test.w = Lanes<W>::load(stored.edge[2]);
+}
+
+template <size_t W> RELIEF_INLINE Lanes<W> find_mean(const TriangleTest<W>& test, const Lanes<W> (&z)[3]) {
+    return (test.u * z[0] + test.v * z[1] + test.w * z[2]) / (test.u + test.v + test.w);
+}
+
+/// Places along the major axis, of which triangles without area have none. A long and narrow triangle that
+/// the ray grazes has edge functions that are small beside the products that they are differences of.
+/// Rounding then moves the place by much of the triangle's length, and a hit ahead of the ray may seem to be
+/// behind it.
+template <size_t W>
+RELIEF_INLINE LaneMask find_places(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], const Lanes<W> (&z)[3],
+                                   TriangleTest<W>& test) {
+    test.t = find_mean(test, z);
+    test.mask &= not_equal(test.u + test.v + test.w, Lanes<W>(0.0f));
+    if (const LaneMask doubtful = find_doubtful_places(x, y, z, test)) [[unlikely]] {
+        find_exact_edges(x, y, doubtful, test);
+        test.t = find_mean(test, z);
+    }
+    return test.mask;
 }
 
 template <size_t W>
-RELIEF_INLINE LaneMask test_distances(const Lanes<W> (&z)[3], const RayState& ray, TriangleTest<W>& test) {
-    find_places(z, test);
+RELIEF_INLINE LaneMask test_distances(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], const Lanes<W> (&z)[3],
+                                      const RayState& ray, TriangleTest<W>& test) {
+    find_places(x, y, z, test);
     test.t = test.t * Lanes<W>(ray.shear[2]);
     float t_min = ray.t_min, t_max = ray.t_max;
     if (ray.shift != 0) [[unlikely]] {
