@@ -1,6 +1,7 @@
 // One ray in an object's space: conservative test against boxes, watertight against triangles.
 #ifndef RELIEF_OBJECT_RAY_H
 #define RELIEF_OBJECT_RAY_H
+#include "formulas/exact_edge.h"
 #include "formulas/local_start.h"
 
 #include "formulas/begin.h"
@@ -102,6 +103,33 @@ struct TriangleHit {
     float weight_b, weight_c;
 };
 
+/// Edge functions opposite the corners a, b and c, and the place of the hit along the major axis.
+struct TriangleEdges {
+    float u, v, w, sum, place;
+};
+
+FN TriangleEdges place_hit(const Vec3 a, const Vec3 b, const Vec3 c, const float u, const float v,
+                           const float w) {
+    EXACT float sum = u + v + w;
+    EXACT float place = (u * a.z + v * b.z + w * c.z) / sum;
+    TriangleEdges edges = {u, v, w, sum, place};
+    return edges;
+}
+
+FN bool is_on_one_side(const float u, const float v, const float w) {
+    return min(min(u, v), w) >= 0.0f || max(max(u, v), w) <= 0.0f;
+}
+
+/// Whether rounding may have put the place on the wrong side of the ray's origin. The place is a mean of z:
+/// where no corner or all corners are behind the origin, its sign is right.
+FN bool is_place_doubtful(const Vec3 a, const Vec3 b, const Vec3 c, const TriangleEdges edges) {
+    if (is_on_one_side(a.z, b.z, c.z)) return false;
+    EXACT float distance = abs(edges.place) * abs(edges.sum);
+    EXACT float products = find_largest(a.x, b.x, c.x) * find_largest(a.y, b.y, c.y);
+    EXACT float rounding = products * find_largest(a.z, b.z, c.z) * kEdgeRounding;
+    return distance <= rounding;
+}
+
 /// `a`, `b`, `c`: sheared corners. The sign of an edge function is never wrong, at most zero, and zero counts
 /// as inside. Fused operations would break this.
 FN TriangleHit intersect_sheared(const ObjectRay ray, const Vec3 a, const Vec3 b, const Vec3 c,
@@ -110,14 +138,18 @@ FN TriangleHit intersect_sheared(const ObjectRay ray, const Vec3 a, const Vec3 b
     EXACT float v = a.x * c.y - a.y * c.x;
     EXACT float w = b.x * a.y - b.y * a.x;
     TriangleHit result = {uintBitsToFloat(0x7f800000u), 0.0f, 0.0f};
-    if (!(min(min(u, v), w) >= 0.0f || max(max(u, v), w) <= 0.0f)) return result;
-    EXACT float sum = u + v + w;
-    if (sum == 0.0f) return result;
-    EXACT float t = (u * a.z + v * b.z + w * c.z) / sum * ray.shear_z + ray.shift;
+    if (!is_on_one_side(u, v, w)) return result;
+    TriangleEdges edges = place_hit(a, b, c, u, v, w);
+    if (edges.sum == 0.0f) return result;
+    if (is_place_doubtful(a, b, c, edges)) {
+        edges = place_hit(a, b, c, find_exact_edge(c.x, c.y, b.x, b.y, u),
+                          find_exact_edge(a.x, a.y, c.x, c.y, v), find_exact_edge(b.x, b.y, a.x, a.y, w));
+    }
+    EXACT float t = edges.place * ray.shear_z + ray.shift;
     if (!(t > t_min && t <= t_max)) return result;
     result.t = t;
-    result.weight_b = v / sum;
-    result.weight_c = w / sum;
+    result.weight_b = edges.v / edges.sum;
+    result.weight_c = edges.w / edges.sum;
     return result;
 }
 

@@ -24,44 +24,37 @@ RELIEF_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3]
     return test.mask = same_side(test.u, test.v, test.w);
 }
 
-/// Triangles, of those that were hit, whose place rounding may have put on the wrong side of the ray's
-/// origin.
+/// Triangles, of those that were hit, for which scalar::is_place_doubtful is true.
 template <size_t W>
 RELIEF_INLINE LaneMask find_doubtful_places(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3],
                                             const Lanes<W> (&z)[3], const TriangleTest<W>& test) {
-    // The place is a mean of z: where no corner or all corners are behind the origin, its sign is right.
     const LaneMask around_origin = test.mask & ~same_side(z[0], z[1], z[2]);
     if (!around_origin) [[likely]]
         return 0;
-    const auto find_size = [](const Lanes<W>(&of)[3]) {
+    const auto find_largest = [](const Lanes<W>(&of)[3]) {
         return max(max(magnitude(of[0]), magnitude(of[1])), magnitude(of[2]));
     };
-    // Four roundings of products as large as these two sizes are in each edge function. Each moves the mean
-    // by at most twice the largest z; the rest of the factor leaves room for the roundings of the mean
-    // itself.
-    constexpr float kRounding = 0x1p-19f;
-    const Lanes<W> products = find_size(x) * find_size(y), sum = magnitude(test.u + test.v + test.w);
-    return around_origin & less_equal(magnitude(test.t) * sum, products * find_size(z) * Lanes<W>(kRounding));
+    const Lanes<W> distance = magnitude(test.t) * magnitude(test.u + test.v + test.w);
+    const Lanes<W> products = find_largest(x) * find_largest(y);
+    return around_origin & less_equal(distance, products * find_largest(z) * Lanes<W>(scalar::kEdgeRounding));
 }
 
 /// Corners as rays see them and edge functions of W triangles, in memory.
 template <size_t W> struct StoredEdges { alignas(64) float x[3][W], y[3][W], edge[3][W]; };
 
-/// Edge functions in double precision, where both products are exact. One that rounding had made zero, and
-/// that has the sign of an outside, stays zero.
 template <size_t W> HWY_NOINLINE void find_exact_edges(LaneMask lanes, StoredEdges<W>& stored) {
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(lanes));
         for (int k = 0; k < 3; ++k) {
             const int from = (k + 2) % 3, to = (k + 1) % 3;
-            const double x[2] = {stored.x[from][lane], stored.x[to][lane]};
-            const double y[2] = {stored.y[from][lane], stored.y[to][lane]};
-            if (stored.edge[k][lane] != 0) stored.edge[k][lane] = float(x[0] * y[1] - y[0] * x[1]);
+            float& edge = stored.edge[k][lane];
+            edge = scalar::find_exact_edge(stored.x[from][lane], stored.y[from][lane], stored.x[to][lane],
+                                           stored.y[to][lane], edge);
         }
     }
 }
 
-/// The same for lanes in registers, which go to memory here alone.
+/// scalar::find_exact_edge for lanes in registers, which go to memory here alone.
 template <size_t W>
 RELIEF_INLINE void find_exact_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], LaneMask lanes,
                                     TriangleTest<W>& test) {
