@@ -1,15 +1,48 @@
-// Which light a point draws, and how likely: by the estimates of a few, or down a tree of many.
+// The light that a point draws, and how likely that is: path/light_choice.h over tables in memory.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
 
+#include "formulas/constants.h"
 #include "formulas/light_tree.h"
 #include "prepare/light_sources.h"
 
-namespace relief::cpu {
+namespace relief {
+namespace scalar {
+
+/// The functions of path/light_choice.h; the tables must outlive it.
+class LightChooser {
+  public:
+    explicit LightChooser(const LightTables& tables) : tables_(tables) {}
+
+    /// Whether a light of the scene's list lights the object that the point is on.
+    bool is_lit(const LightSourceData& source, const LitPoint& at) const {
+        return source.link == kNoIndex ||
+               is_in_set(tables_.link_words[source.link + at.instance / 32], at.instance);
+    }
+    float estimate_source(const LightSourceData& source, const LitPoint& at) const {
+        if (!is_lit(source, at)) return 0;
+        // The estimate of these two is their power. To take it here spares a call.
+        const bool is_far = source.kind == kSourceEnvironment || source.kind == kSourceSun;
+        return is_far ? source.power : estimate_irradiance(source, at.position);
+    }
+    bool has_light_tree() const { return !tables_.nodes.empty(); }
+
+#include "path/light_choice.h"
+
+  private:
+    const LightSourceData& load_light_source(uint k) const { return tables_.sources[k]; }
+    const LightNodeData& load_light_node(uint k) const { return tables_.nodes[k]; }
+
+    const LightTables& tables_;
+};
+
+} // namespace scalar
+
+namespace cpu {
 
 /// Immutable once made.
 class LightChoice {
@@ -19,27 +52,25 @@ class LightChoice {
 
     /// Lights that may be drawn and are no emissive surface.
     std::span<const scalar::LightSourceData> sources() const { return tables_.sources; }
-    /// Whether a light of the scene's list lights the object that the point is on.
     bool is_lit(const scalar::LightSourceData& source, const scalar::LitPoint& at) const {
-        return source.link == kNoIndex ||
-               scalar::is_in_set(tables_.link_words[source.link + at.instance / 32], at.instance);
+        return chooser().is_lit(source, at);
     }
     /// What the texture of a light that has one adds to its colour where a ray meets it.
     Vec3f fetch_color(const scalar::LightSourceData& source, const Vec3f& origin,
                       const Vec3f& direction) const;
     /// Of them, those that are chosen by their estimates.
     std::span<const scalar::LightSourceData> listed() const { return sources().first(tables_.listed_count); }
-    bool has_tree() const { return !tables_.nodes.empty(); }
+    bool has_tree() const { return chooser().has_light_tree(); }
 
     struct Pick {
-        const scalar::LightSourceData* source; ///< null: an emissive patch, or all is dark
-        uint32_t emitter;                      ///< that patch; kNoIndex: a source, or all is dark
-        float probability;                     ///< > 0 but in the dark
+        const scalar::LightSourceData* source; ///< null: an emissive patch, or no light reaches the point
+        uint32_t emitter;  ///< number of that patch; kNoIndex: a source, or no light reaches the point
+        float probability; ///< 0: no light reaches the point
     };
-    /// `u_further` continues `u` where that has too few digits: of many lights.
+    /// `u_further` is a second random number, for choices of which `u` has too few digits.
     Pick pick(const scalar::LitPoint& at, float u, float u_further) const;
 
-    /// Probabilities of a point's lights. Those of the sources that are listed are shares of `listed`, times
+    /// Probabilities of the lights of a point. Listed sources have their estimates' shares of `listed`, times
     /// `list_share`; the tree has the rest.
     struct Shares {
         float listed;     ///< sum of their estimates
@@ -63,13 +94,9 @@ class LightChoice {
     size_t byte_count() const;
 
   private:
-    float estimate(const scalar::LightSourceData& source, const scalar::LitPoint& at) const;
-    float total_estimate(const scalar::LitPoint& at) const;
-    float estimate_child(uint32_t node, const scalar::LitPoint& at) const;
-    float estimate_alone(const scalar::LightNodeData& node, const scalar::LitPoint& at) const;
-    Pick pick_listed(const scalar::LitPoint& at, float u, float total) const;
-    Pick pick_in_tree(const scalar::LitPoint& at, float u, float u_further) const;
-    float find_in_tree(const scalar::LitPoint& at, uint32_t leaf) const;
+    static constexpr uint32_t kRoot = 0;
+
+    scalar::LightChooser chooser() const { return scalar::LightChooser(tables_); }
     template <class Visit>
     void visit_leaves(const Vec3f& origin, const Vec3f& direction, float distance, uint32_t flag,
                       const Visit& visit) const;
@@ -81,12 +108,11 @@ class LightChoice {
 template <class Visit>
 void LightChoice::visit_leaves(const Vec3f& origin, const Vec3f& direction, float distance, uint32_t flag,
                                const Visit& visit) const {
-    for (uint32_t k = 0; k < tables_.nodes.size();) {
-        const scalar::LightNodeData& node = tables_.nodes[k];
-        const bool is_met = (node.flags & flag) != 0 && scalar::may_meet(node, origin, direction, distance);
-        if (is_met && node.source != scalar::kNone) visit(k);
-        k = is_met ? k + 1 : node.end;
-    }
+    const uint32_t end = uint32_t(tables_.nodes.size());
+    const auto find_next = [&](uint32_t place) {
+        return chooser().find_leaf(place, end, origin, direction, distance, flag);
+    };
+    for (uint32_t k = find_next(kRoot); k < end; k = find_next(k + 1)) visit(k);
 }
 
 template <class Visit>
@@ -95,7 +121,7 @@ void LightChoice::visit_met(const scalar::LitPoint& at, const Shares& shares, co
     visit_leaves(at.position, direction, distance, scalar::kCanBeMet, [&](uint32_t leaf) {
         const scalar::LightSourceData& source = tables_.sources[tables_.nodes[leaf].source];
         if (!is_lit(source, at)) return;
-        visit(source, [&] { return (1 - shares.list_share) * find_in_tree(at, leaf); });
+        visit(source, [&] { return (1 - shares.list_share) * chooser().find_in_tree(kRoot, at, leaf); });
     });
 }
 
@@ -108,4 +134,5 @@ void LightChoice::visit_seen(const Vec3f& origin, const Vec3f& direction, float 
                  [&](uint32_t leaf) { visit(tables_.sources[tables_.nodes[leaf].source]); });
 }
 
-} // namespace relief::cpu
+} // namespace cpu
+} // namespace relief

@@ -2,7 +2,6 @@
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
 #include "vulkan/shaders/environment_light.glsl"
-#include "vulkan/shaders/light_tree.glsl"
 #include "vulkan/shaders/lights.glsl"
 #include "vulkan/shaders/surface_point.glsl"
 #include "vulkan/shaders/light_sums.glsl"

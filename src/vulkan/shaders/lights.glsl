@@ -18,13 +18,6 @@ layout(scalar, set = 0, binding = kBindSources) readonly buffer LinkWords { uint
 /// EmitterData, then a range (first emitter, instance) for each emissive instance.
 layout(set = 0, binding = kBindEmitters) uniform usamplerBuffer emitter_table;
 
-/// A light source or an emissive patch, of all lights, which has been chosen with `probability`.
-struct LightPick {
-    uint source;  ///< kNone: an emissive patch, or all is dark
-    uint emitter; ///< that patch; kNone: a source, or all is dark
-    float probability;
-};
-
 /// Whether a light of the scene's list lights the object that the point is on.
 bool is_lit(const LightSourceData source, const LitPoint at) {
     if (kHasLightLinks == 0u || source.link == kNone) return true;
@@ -47,28 +40,15 @@ LightSeen meet_source(const LightSourceData source, const vec3 origin, const vec
     return seen;
 }
 
+// The functions that path/light_choice.h calls.
+LightSourceData load_light_source(const uint k) { return sources[k]; }
+LightNodeData load_light_node(const uint k) { return light_nodes[k]; }
+bool has_light_tree() { return kHasLightTree != 0u; }
 float estimate_source(const LightSourceData source, const LitPoint at) {
     return is_lit(source, at) ? estimate_irradiance(source, at.position) : 0.0;
 }
 
-float total_irradiance(const uint source_count, const LitPoint at) {
-    float total = 0.0;
-    for (uint k = 0u; k < source_count; ++k) total += estimate_source(sources[k], at);
-    return total;
-}
-
-LightPick pick_listed(const uint source_count, const LitPoint at, const float u, const float total) {
-    LightPick dark = {kNone, kNone, 0.0};
-    if (!(total > 0.0)) return dark;
-    float target = u * total;
-    float running = 0.0;
-    for (uint k = 0u;; ++k) {
-        float estimate = estimate_source(sources[k], at);
-        running += estimate;
-        LightPick pick = {k, kNone, estimate / total};
-        if (running > target || k + 1u >= source_count) return pick;
-    }
-}
+#include "path/light_choice.h"
 
 float load_emitter_probability(const uint emitter) {
     return uintBitsToFloat(texelFetch(emitter_table, int(emitter)).y);

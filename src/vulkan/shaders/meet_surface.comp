@@ -1,25 +1,11 @@
 // What a path meets at a surface: emission, the glass that it goes through, guides.
 #include "vulkan/shaders/kernel.glsl"
 #include "vulkan/shaders/paths.glsl"
-#include "vulkan/shaders/light_tree.glsl"
 #include "vulkan/shaders/lights.glsl"
 #include "vulkan/shaders/light_sums.glsl"
 #include "formulas/guides.h"
 
 layout(scalar, push_constant) uniform Push { PathPush push; };
-
-/// Probability of an emissive patch; without a tree of all of them.
-float find_emitter_probability(const LitPoint at, const uint emitter) {
-    float listed = total_irradiance(push.source_count, at);
-    if (kHasLightTree != 0u) {
-        uint leaf = texelFetch(emitter_table, int(emitter)).y;
-        if (leaf == kNone) return 0.0;
-        float list_share = 1.0 - find_share_of_tree(push.first_light_node, at, listed);
-        return (1.0 - list_share) * find_in_tree(push.first_light_node, at, leaf);
-    }
-    if (push.source_count == 0u || sources[push.source_count - 1u].kind != kSourceEmitters) return 0.0;
-    return estimate_irradiance(sources[push.source_count - 1u], at.position) / listed;
-}
 
 /// Density with which draw_light at the previous vertex would have sampled this point.
 float emitter_pdf(const PathData path, const HitData hit, const SurfacePointData point) {
@@ -27,7 +13,8 @@ float emitter_pdf(const PathData path, const HitData hit, const SurfacePointData
     uint emitter =
         find_emitter_range(push.emitter_count, push.emitter_range_count, 1u, hit.instance).x + hit.patch_index;
     LitPoint previous = {path.previous, path.normal, path.instance};
-    return find_emitter_probability(previous, emitter) *
+    uint leaf = kHasLightTree != 0u ? texelFetch(emitter_table, int(emitter)).y : kNone;
+    return find_emitter_probability(push.source_count, push.first_light_node, previous, leaf) *
            emitter_density(load_probability(emitter), point.area_per_uv, point.geometric_normal,
                            point.position - path.previous);
 }

@@ -4,7 +4,6 @@
 #define RELIEF_MET_LIGHTS_GLSL
 
 #include "vulkan/shaders/paths.glsl"
-#include "vulkan/shaders/light_tree.glsl"
 #include "vulkan/shaders/lights.glsl"
 #include "vulkan/shaders/light_sums.glsl"
 
@@ -50,8 +49,8 @@ vec3 gather_light(const Meeting meeting, const PathData path, const vec3 directi
                   const LightSeen behind) {
     vec3 sum = vec3(0.0);
     LitPoint at = {path.previous, path.normal, path.instance};
-    float total = total_irradiance(push.source_count, at);
-    float list_share = 1.0 - find_share_of_tree(push.first_light_node, at, total);
+    float total = estimate_listed(push.source_count, at);
+    float list_share = find_list_share(push.first_light_node, at, total);
     for (uint k = 0u; k < push.source_count; ++k) {
         LightSourceData source = sources[k];
         if (!is_lit(source, at)) continue;
