@@ -15,7 +15,6 @@ class CastBuffers {
 
     /// Grows the tree records to `count`; existing records are kept.
     void reserve_trees(const Device& device, uint32_t count, Commands& commands, BindingTable& bindings);
-    uint32_t tree_capacity() const { return tree_capacity_; }
     /// Maximum number of trees with pairs at a time; the size of each build bin.
     uint32_t job_capacity() const { return job_capacity_; }
 

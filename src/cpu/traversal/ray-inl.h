@@ -29,7 +29,6 @@ struct RayState {
     float own_t_min, own_t_max; ///< of a ray that was moved, in its own t
 
     /// Of hits, in the ray's own t.
-    RELIEF_INLINE float hit_t_min() const { return shift == 0 ? t_min : own_t_min; }
     RELIEF_INLINE float hit_t_max() const { return shift == 0 ? t_max : own_t_max; }
 
     /// Nothing beyond `t` is sought any more. Own t of a moved ray are rounded: boxes are met somewhat
