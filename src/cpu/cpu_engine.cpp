@@ -106,6 +106,7 @@ class CpuEngine final : public Engine, private PassTracer {
         statistics.shade_s += counters_.shade_s;
         statistics.film_s += counters_.film_s;
         if (footprints_) statistics.ray_buffers_bytes += footprints_->byte_count();
+        lights_.add_statistics(statistics);
         tracer_.add_statistics(statistics);
     }
 

@@ -1,8 +1,12 @@
-// Statistics of casts by depth and kind; they add up to the totals.
+// Statistics of casts by depth and kind, which add up to the totals, and of memory.
 #include <gtest/gtest.h>
 
+#include <cstddef>
+
+#include "formulas/light_source.h"
 #include "relief/render.h"
 #include "relief/samples.h"
+#include "support/bodies.h"
 
 namespace relief {
 namespace {
@@ -50,6 +54,23 @@ TEST(CastStatistics, are_ordered_by_depth_and_add_up_to_the_whole) {
     EXPECT_DOUBLE_EQ(sum.top_traversal_s, s.top_traversal_s);
     EXPECT_DOUBLE_EQ(sum.bottom_build_s, s.bottom_build_s);
     EXPECT_DOUBLE_EQ(sum.bottom_traversal_s, s.bottom_traversal_s);
+}
+
+TEST(MemoryStatistics, include_lights_and_the_environment) {
+    RenderSettings settings;
+    settings.image.width = settings.image.height = 8;
+    settings.image.spp = 1, settings.image.bounces = 0;
+    Scene scene = test::make_body_scene(
+        test::make_cube_sphere(1),
+        test::make_displacement(test::make_random_map(8, 8, 0, 1), DisplacementSpace::object));
+    const Statistics dark = render(scene, settings).statistics;
+    constexpr size_t kLights = 100;
+    for (size_t k = 0; k < kLights; ++k)
+        scene.lights.push_back({.type = LightType::point, .position = {2, float(k), 3}});
+    scene.environment.emplace().texture = test::make_random_map(64, 32, 0.5f, 2);
+    const Statistics lit = render(scene, settings).statistics;
+    EXPECT_GE(lit.structures_bytes, dark.structures_bytes + kLights * sizeof(scalar::LightSourceData));
+    EXPECT_GE(lit.displacement_bytes, dark.displacement_bytes + 64 * 32 * sizeof(float));
 }
 
 TEST(CastStatistics, show_that_trees_are_built_again_for_every_cast_without_a_cache) {

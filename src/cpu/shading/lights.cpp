@@ -235,11 +235,11 @@ LightSet::Sight LightSet::see(const Vec3f& origin, const Vec3f& direction, float
     return sight;
 }
 
-size_t LightSet::byte_count() const {
-    return (environment_ ? environment_->byte_count() : 0) + choice_.byte_count() +
-           emitters_.cumulative.size() * sizeof(double) +
-           emitters_.ranges.size() * sizeof(EmitterTable::Range) +
-           emitters_.first_of_instance.size() * sizeof(uint32_t);
+void LightSet::add_statistics(Statistics& statistics) const {
+    if (environment_) statistics.displacement_bytes += environment_->byte_count();
+    statistics.structures_bytes += choice_.byte_count() + emitters_.cumulative.size() * sizeof(double) +
+                                   emitters_.ranges.size() * sizeof(EmitterTable::Range) +
+                                   emitters_.first_of_instance.size() * sizeof(uint32_t);
 }
 
 } // namespace relief::cpu

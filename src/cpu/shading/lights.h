@@ -105,7 +105,9 @@ class LightSet {
     /// Density with which draw() would have found a point of an emissive surface.
     float emitter_pdf(const scalar::LitPoint& at, const SurfacePoint& point) const;
 
-    size_t byte_count() const;
+    /// Adds the bytes of the tables and the tree of lights to structures_bytes, and those of the distribution
+    /// of the environment to displacement_bytes.
+    void add_statistics(Statistics& statistics) const;
 
   private:
     void find_sources();
