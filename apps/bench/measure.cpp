@@ -106,7 +106,7 @@ std::vector<std::vector<double>> time_in_turn(const std::vector<Measure>& measur
 Scene make_white(Scene scene) {
     for (Material& material : scene.materials) {
         material.base_color = {1, 1, 1};
-        material.base_color_texture = nullptr;
+        set_input_texture(material, MaterialInput::base_color, nullptr);
     }
     return scene;
 }

@@ -27,7 +27,7 @@ struct MaterialInputKind {
     bool Material::*flag = nullptr;
     float low = 0, high = 1;           ///< limits of the number, or of each part of the colour; inclusive
     MaterialInput input = kUntextured; ///< what textures of it name
-    const char* texture_key = nullptr; ///< key of a texture that is a member of Material; null: none
+    const char* texture_key = nullptr; ///< further key of its texture alone; null: none
     const char* texture_hint =
         nullptr;                  ///< why it takes no texture, or what to texture instead; null: it takes one
     bool is_layered = false;      ///< a number that the albedo table of layers depends on

@@ -162,8 +162,9 @@ struct Displacement {
 };
 
 /// What a texture of a material is for. Colours are multiplied by its first three channels, numbers by the
-/// first one; the values of all but `emission` and `emission_luminance` end at 1, that of a normal is a
-/// direction, as in Material::normal_texture.
+/// first one; the values of all but `emission` and `emission_luminance` end at 1. A normal is one about the
+/// shading normal, displacement included, +Y towards growing v: raw values in [0, 1] of three channels or
+/// more, direction 2 value - 1. Objects with one need uvs.
 enum class MaterialInput : uint8_t {
     base_color,
     base_weight,
@@ -204,25 +205,20 @@ struct InputTexture {
 };
 
 /// OpenPBR 1.1 without subsurface: fuzz over a coat over a base, which is metal, a diffuse
-/// body under a clear dielectric surface, glass, or a mix of them. With what comes after the filters as it
-/// is, a metallic-roughness material. Colours are linear. Textures multiply the constants; row 0 of a texture
-/// is v = 1, wrap mode of those that are members is repeat.
+/// body under a clear dielectric surface, glass, or a mix of them. With what comes after `emission` as
+/// it is, a metallic-roughness material. Colours are linear. Textures multiply the constants; row 0 of a
+/// texture is v = 1.
 struct Material {
     std::string name;
-    Vec3f base_color{0.8f, 0.8f, 0.8f};                ///< linear, each in [0, 1]
-    float roughness = 0.5f;                            ///< [0, 1]; GGX alpha is its square
-    float metallic = 0.0f;                             ///< [0, 1]
-    float ior = 1.5f;                                  ///< of the clear surface, >= 1; 1 removes it
-    Vec3f emission{0, 0, 0};                           ///< radiance, >= 0
-    std::shared_ptr<const Texture> base_color_texture; ///< linear values (the reader decodes sRGB)
-    std::shared_ptr<const Texture> roughness_texture;  ///< first channel, raw
-    std::shared_ptr<const Texture> metallic_texture;   ///< first channel, raw
-    MapFilter base_color_filter = MapFilter::none, roughness_filter = MapFilter::none,
-              metallic_filter = MapFilter::none; ///< not mip
-    float base_weight = 1;                       ///< [0, 1], times base_color
-    float base_diffuse_roughness = 0;            ///< [0, 1]; 0 is Lambert's law
-    float specular_weight = 1;     ///< [0, 1], times the reflection of the base at normal incidence
-    Vec3f specular_color{1, 1, 1}; ///< each in [0, 1]: a factor; of a metal its tint at grazing angles
+    Vec3f base_color{0.8f, 0.8f, 0.8f}; ///< linear, each in [0, 1]
+    float roughness = 0.5f;             ///< [0, 1]; GGX alpha is its square
+    float metallic = 0.0f;              ///< [0, 1]
+    float ior = 1.5f;                   ///< of the clear surface, >= 1; 1 removes it
+    Vec3f emission{0, 0, 0};            ///< radiance, >= 0
+    float base_weight = 1;              ///< [0, 1], times base_color
+    float base_diffuse_roughness = 0;   ///< [0, 1]; 0 is Lambert's law
+    float specular_weight = 1;          ///< [0, 1], times the reflection of the base at normal incidence
+    Vec3f specular_color{1, 1, 1};      ///< each in [0, 1]: a factor; of a metal its tint at grazing angles
     /// [0, 1]: facets are rougher along the tangent, by uv, than along the bitangent; 0: alike. Objects with
     /// an anisotropic material need uvs.
     float specular_roughness_anisotropy = 0;
@@ -246,50 +242,37 @@ struct Material {
     /// [0, 1]: the part of rays that the surface stops, a cut-out below 1; not of an emitter. Intersectors
     /// take all surfaces for opaque.
     float opacity = 1;
-    std::shared_ptr<const Texture> opacity_texture; ///< first channel, raw
-    MapFilter opacity_filter = MapFilter::none;     ///< not mip
-    /// Tangent-space normals about the shading normal, displacement included, +Y towards growing v: raw
-    /// values in [0, 1] of three channels or more, direction 2 value - 1. Objects with one need uvs.
-    std::shared_ptr<const Texture> normal_texture;
-    MapFilter normal_filter = MapFilter::none; ///< not mip
-    float normal_scale = 1;                    ///< [0, kMaxNormalScale], of x and y of the direction
-    bool normal_flip_y = false;                ///< +Y of the map points against v, as in DirectX
-    std::string light_group;                   ///< of what the surface emits; see is_light_group_name()
-    /// Of any inputs, one each; not of one whose texture is a member.
-    std::vector<InputTexture> textures;
+    float normal_scale = 1;             ///< [0, kMaxNormalScale], of x and y of the normal map's direction
+    bool normal_flip_y = false;         ///< +Y of the map points against v, as in DirectX
+    std::string light_group;            ///< of what the surface emits; see is_light_group_name()
+    std::vector<InputTexture> textures; ///< of any inputs, one each; colours are linear
     friend bool operator==(const Material&, const Material&) = default; ///< with the same images
 };
 
 /// The name of an input in scene files and messages.
 const char* get_input_name(MaterialInput input);
 
-/// Null: the material has no texture of that input, or one that is a member.
+/// Null: the material has no texture of that input.
 const InputTexture* find_input_texture(const Material& material, MaterialInput input);
 
-/// Calls visit(name, texture, filter) for each texture that is a member, also where the material has none.
-template <class AnyMaterial, class Visit> void visit_own_textures(AnyMaterial& material, const Visit& visit) {
-    visit("base_color_texture", material.base_color_texture, material.base_color_filter);
-    visit("roughness_texture", material.roughness_texture, material.roughness_filter);
-    visit("metallic_texture", material.metallic_texture, material.metallic_filter);
-    visit("opacity_texture", material.opacity_texture, material.opacity_filter);
-    visit("normal_texture", material.normal_texture, material.normal_filter);
-}
+/// Gives an input a texture that repeats over the whole uv plane, in place of the one it has; null removes
+/// it.
+void set_input_texture(Material& material, MaterialInput input, std::shared_ptr<const Texture> texture,
+                       MapFilter filter = MapFilter::none);
 
-/// The same, and for the tiles of Material::textures.
+/// Calls visit(name, texture, filter) for each tile of the textures of a material.
 template <class AnyMaterial, class Visit> void visit_textures(AnyMaterial& material, const Visit& visit) {
-    visit_own_textures(material, visit);
     for (auto& placed : material.textures)
         for (auto& tile : placed.tiles) visit(get_input_name(placed.input), tile.texture, placed.filter);
 }
 
 /// Whether some rays pass through a surface of the material as if it were not there.
 inline bool is_cut_out(const Material& material) {
-    return material.opacity < 1 || material.opacity_texture ||
-           find_input_texture(material, MaterialInput::opacity);
+    return material.opacity < 1 || find_input_texture(material, MaterialInput::opacity);
 }
 
 inline bool has_normal_map(const Material& material) {
-    return material.normal_texture || find_input_texture(material, MaterialInput::normal);
+    return find_input_texture(material, MaterialInput::normal) != nullptr;
 }
 
 /// Whether the roughness of a surface of the material has a direction.

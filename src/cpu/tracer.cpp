@@ -328,7 +328,8 @@ SurfacePoint Tracer::evaluate_point(uint32_t instance, uint32_t patch, Vec2f uv,
     const TraceHit hit = locate_hit(*scene_, instance, patch, uv, lod_bias);
     const std::optional<PatchSamples> samples = unpack_patch(*scene_, hit);
     SurfacePoint point = make_cell_point(*scene_, hit, samples ? &*samples : nullptr);
-    if (!scene_->textured.empty()) point.uv = find_uv(*scene_, hit); // an emitter may have a texture
+    if (scene_->textured.has_vertex_numbers)
+        point.uv = find_uv(*scene_, hit); // an emitter may have a texture
     return point;
 }
 

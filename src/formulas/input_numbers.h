@@ -29,9 +29,23 @@ const uint kInputEmission = 26u; ///< the numbers before end at 1
 const uint kInputNormal = 29u;   ///< a texel, in place of a factor
 const uint kInputWords = 32u;
 
+// Sets of places, a bit each; a colour is the bit of its first word.
+const uint kColorPlace = 1u << kInputBaseColor;
+const uint kOpacityPlace = 1u << kInputOpacity;
+const uint kEmissionPlace = 1u << kInputEmission;
+const uint kNormalPlace = 1u << kInputNormal;
+// What a point has of itself, beside its opacity and normal; a texture of any other number makes it have
+// InputNumbers.
+const uint kPointPlaces = kColorPlace | 1u << kInputRoughness | 1u << kInputMetallic;
+// What decides how much light goes straight through a clear wall.
+const uint kWallPlaces = kOpacityPlace | 1u << kInputMetallic | 1u << kInputSpecularColor |
+                         1u << kInputTransmissionWeight | 1u << kInputTransmissionColor;
+
 struct InputNumbers {
     float word[kInputWords];
 };
+
+FN bool has_place(const uint places, const uint place) { return (places >> place & 1u) != 0u; }
 
 /// What does not change over the surface.
 struct InputConstants {
@@ -45,7 +59,13 @@ FN Vec3 get_input_color(InputNumbers numbers, const uint place) {
     return color;
 }
 
-/// `value` of a texture for `count` words from `place` on, all of one number where they are three.
+/// Ends at 1, but for an emission.
+FN float limit_input(const uint place, const float value) {
+    return place < kInputEmission ? clamp(value, 0.0f, 1.0f) : max(value, 0.0f);
+}
+
+/// `value` of a texture for `count` words from `place` on, all of one number where they are three. Each ends
+/// in its range; a normal is as it is.
 FN InputNumbers apply_input(InputNumbers numbers, const uint place, const uint count, const Vec3 value) {
     if (place == kInputNormal) {
         numbers.word[kInputNormal] = value.x;
@@ -53,10 +73,10 @@ FN InputNumbers apply_input(InputNumbers numbers, const uint place, const uint c
         numbers.word[kInputNormal + 2u] = value.z;
         return numbers;
     }
-    numbers.word[place] = numbers.word[place] * value.x;
+    numbers.word[place] = limit_input(place, numbers.word[place] * value.x);
     if (count == 1u) return numbers;
-    numbers.word[place + 1u] = numbers.word[place + 1u] * value.y;
-    numbers.word[place + 2u] = numbers.word[place + 2u] * value.z;
+    numbers.word[place + 1u] = limit_input(place, numbers.word[place + 1u] * value.y);
+    numbers.word[place + 2u] = limit_input(place, numbers.word[place + 2u] * value.z);
     return numbers;
 }
 

@@ -29,15 +29,13 @@ constexpr Vec3f kWhite{1, 1, 1};
 /// Of a block with one row an azimuth.
 constexpr uint32_t count_entries(uint32_t azimuths) { return (azimuths + 1) * kColumns + 1; }
 
-uint32_t count_rows(const Material& material) { return material.roughness_texture ? kRows : 1; }
-
 /// -log2 of the square root of a colour: straight down and up again makes the colour itself.
 Vec3f find_depth(const Vec3f& color) {
     const auto depth = [](float c) { return -0.5f * std::log2(std::max(c, 1e-12f)); };
     return {depth(color.x), depth(color.y), depth(color.z)};
 }
 
-/// All but fuzz_scale and first_entry.
+/// All but fuzz_scale, row_scale and first_entry.
 scalar::LayerParameters make_record(const Material& material) {
     scalar::LayerParameters l{};
     l.specular_color = material.specular_color, l.specular_weight = material.specular_weight;
@@ -62,7 +60,6 @@ scalar::LayerParameters make_record(const Material& material) {
     l.specular_anisotropy = material.specular_roughness_anisotropy;
     if (material.coat_weight > 0) l.coat_anisotropy = material.coat_roughness_anisotropy;
     l.azimuth_scale = is_anisotropic(material) ? float(kAzimuths - 1) : 0.0f;
-    l.row_scale = float(count_rows(material) - 1);
     return l;
 }
 
@@ -198,7 +195,8 @@ void fill_row(const scalar::LayerParameters& layers, const RowSource& source, co
 struct Block {
     uint32_t record;
     const Material* material;
-    const TexturedMaterial* textured; ///< null: no grid
+    const TexturedMaterial* textured; ///< null: no grid, as vertices have no numbers of their own
+    FactorRange roughness{};          ///< of one without a grid
     scalar::InputNumbers least{};     ///< those of the first row of a grid
     uint32_t fuzz_rows = 1;
 };
@@ -213,8 +211,6 @@ FactorRange find_range(const Material& material, const MaterialInputKind& kind) 
     FactorRange range;
     if (const InputTexture* texture = find_input_texture(material, kind.input))
         range = find_factors(*texture);
-    else if (kind.input == MaterialInput::roughness && material.roughness_texture)
-        range = find_factors({.input = kind.input, .tiles = {{1001, material.roughness_texture}}});
     const float number = material.*kind.number;
     return {std::clamp(number * range.lower, 0.0f, 1.0f), std::clamp(number * range.upper, 0.0f, 1.0f)};
 }
@@ -284,10 +280,12 @@ void add_block(Block block, std::vector<Block>& blocks, MaterialLayers& result) 
     block.record = uint32_t(result.records.size());
     scalar::LayerParameters l = make_record(*block.material);
     scalar::LayerGrid grid{};
-    grid.row_count = count_rows(*block.material);
     if (block.textured) {
         grid = make_grid(block);
-        l.row_scale = 0;
+    } else {
+        block.roughness = find_range(*block.material, get_input_kind(MaterialInput::roughness));
+        grid.row_count = block.roughness.upper > block.roughness.lower ? kRows : 1;
+        l.row_scale = float(grid.row_count - 1);
     }
     grid.azimuth_count = uint32_t(l.azimuth_scale) + 1;
     if (block.textured)
@@ -321,7 +319,7 @@ void fill_rests(const Block& block, const Row& row, const std::vector<Vec2f>& fu
     const uint32_t count = grid.row_count;
     Vec2f* const target = &result.entries[l.first_entry + (row.azimuth * count + row.row) * kColumns];
     if (block.textured) return fill_grid_row(block, result, row, fuzz.data(), target);
-    const float roughness = count == 1 ? block.material->roughness : float(row.row) / float(count - 1);
+    const float roughness = count == 1 ? block.roughness.lower : float(row.row) / float(count - 1);
     fill_row(l, {roughness, row.azimuth, grid.azimuth_count, count_samples(block, grid)},
              &fuzz[l.first_entry], target);
 }
@@ -373,7 +371,10 @@ MaterialLayers make_material_layers(const std::vector<Material>& materials,
         const Material& material = materials[k];
         const bool has_layers = is_layered(material);
         result.record_of_material.push_back(has_layers ? uint32_t(result.records.size()) : kNoIndex);
-        if (has_layers) add_block({.material = &material, .textured = textured.find(k)}, blocks, result);
+        if (!has_layers) continue;
+        const TexturedMaterial* placed = textured.find(k);
+        if (placed && !placed->has_vertex_numbers) placed = nullptr;
+        add_block({.material = &material, .textured = placed}, blocks, result);
     }
     for (const Block& block : blocks) {
         const scalar::LayerGrid& grid = result.grids[block.record];

@@ -166,11 +166,6 @@ void prepare_textures(std::vector<Material>& materials) {
             for (MapTile& tile : placed.tiles) tile.texture = splines.get_or_make(tile.texture, form);
             if (is_smooth(placed.filter)) placed.filter = MapFilter::bspline;
         }
-        visit_own_textures(material, [&](const char*, auto& texture, MapFilter& filter) {
-            if (!is_smooth(filter)) return;
-            texture = splines.get_or_make(texture, make_spline_form(filter));
-            filter = MapFilter::bspline;
-        });
     }
 }
 

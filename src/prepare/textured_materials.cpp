@@ -41,6 +41,30 @@ PlacedTexture place_texture(const InputTexture& texture) {
     return placed;
 }
 
+/// Whether it changes base colour, roughness or metallic by itself.
+bool is_of_point(MaterialInput input) {
+    return input == MaterialInput::base_color || input == MaterialInput::roughness ||
+           input == MaterialInput::metallic;
+}
+
+TexturedMaterial make_textured_material(const Material& material) {
+    TexturedMaterial textured;
+    textured.numbers = list_numbers(material);
+    textured.constants = {material.ior, material.coat_ior,
+                          material.transmission_depth > 0 && !material.is_thin_walled ? 1u : 0u};
+    for (const bool is_first : {true, false})
+        for (const InputTexture& texture : material.textures) {
+            if (is_of_point(texture.input) != is_first) continue;
+            textured.textures.push_back(place_texture(texture));
+            textured.places |= 1u << textured.textures.back().place.first;
+            if (is_first)
+                ++textured.point_count;
+            else if (texture.input != MaterialInput::opacity && texture.input != MaterialInput::normal)
+                textured.has_vertex_numbers = true;
+        }
+    return textured;
+}
+
 } // namespace
 
 InputPlace find_input_place(MaterialInput input) {
@@ -96,13 +120,8 @@ TexturedMaterials make_textured_materials(const std::vector<Material>& materials
         const bool has_textures = !material.textures.empty();
         result.of_material.push_back(has_textures ? uint32_t(result.list.size()) : kNoIndex);
         if (!has_textures) continue;
-        TexturedMaterial textured;
-        textured.numbers = list_numbers(material);
-        textured.constants = {material.ior, material.coat_ior,
-                              material.transmission_depth > 0 && !material.is_thin_walled ? 1u : 0u};
-        for (const InputTexture& texture : material.textures)
-            textured.textures.push_back(place_texture(texture));
-        result.list.push_back(std::move(textured));
+        result.list.push_back(make_textured_material(material));
+        result.has_vertex_numbers |= result.list.back().has_vertex_numbers;
     }
     return result;
 }

@@ -1,4 +1,4 @@
-// Materials whose inputs have textures of their own (Material::textures), as both engines read them.
+// Textures of the inputs of materials, as both engines read them.
 #pragma once
 
 #include <memory>
@@ -31,12 +31,16 @@ struct PlacedTexture {
 struct TexturedMaterial {
     scalar::InputNumbers numbers; ///< that the textures multiply
     scalar::InputConstants constants;
-    std::vector<PlacedTexture> textures;
+    std::vector<PlacedTexture> textures; ///< first those of what a point has of itself
+    size_t point_count = 0;              ///< of the latter
+    uint32_t places = 0;                 ///< of `numbers` that they change, as scalar::kPointPlaces
+    bool has_vertex_numbers = false;     ///< they change numbers that no point has of itself
 };
 
 struct TexturedMaterials {
     std::vector<TexturedMaterial> list;
     std::vector<uint32_t> of_material; ///< place in `list`; kNoIndex: without
+    bool has_vertex_numbers = false;   ///< of some material
 
     bool empty() const { return list.empty(); }
     /// Null: of a material without.

@@ -15,7 +15,7 @@ Model bake_model(const std::string& name, DisplacementSpace space, WrapMode wrap
     model.displacement.tiles = {{1001, std::move(maps.displacement)}};
     model.material.name = name;
     model.material.base_color = {1, 1, 1};
-    model.material.base_color_texture = std::move(maps.color);
+    set_input_texture(model.material, MaterialInput::base_color, std::move(maps.color));
     return model;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -47,7 +46,6 @@ void check_tiles(const std::string& where, const InputTexture& texture) {
 }
 
 void check_input_texture(const Material& material, const InputTexture& texture, const std::string& where) {
-    const MaterialInputKind& kind = get_input_kind(texture.input);
     if (uint32_t(texture.wrap) > uint32_t(WrapMode::black) || texture.filter == MapFilter::mip ||
         texture.filter > MapFilter::bspline)
         refuse(where, "its wrap or filter is none of those there are", "filters are none, cubic and bspline");
@@ -72,16 +70,12 @@ void check_input_texture(const Material& material, const InputTexture& texture, 
         refuse(where,
                "a texture lies on the surface, and with transmission_depth this is the colour of the inside",
                "leave transmission_depth out, so that each crossing of the surface takes the colour");
-    visit_own_textures(material, [&](const char* name, const auto& own, MapFilter) {
-        if (own && kind.texture_key && std::string_view(name) == kind.texture_key)
-            refuse(where, fmt::format("has a texture twice: {} as well", name), "leave one of the two out");
-    });
 }
 
 } // namespace
 
 void check_input_textures(const Material& material, const std::string& where) {
-    size_t layered = material.roughness_texture ? 1 : 0;
+    size_t layered = 0;
     std::set<MaterialInput> seen;
     for (const InputTexture& texture : material.textures)
         if (size_t(texture.input) >= kMaterialInputCount)
@@ -94,7 +88,7 @@ void check_input_textures(const Material& material, const std::string& where) {
         layered += get_input_kind(texture.input).is_layered ? 1 : 0;
     }
     const size_t most = is_anisotropic(material) ? kMaxStretchedTextures : kMaxLayerTextures;
-    if (!material.textures.empty() && layered > most)
+    if (layered > most)
         refuse(where,
                fmt::format(
                    "{} of the numbers that the albedo of its layers depends on have textures, and at most "

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
+#include "base/udim.h"
 #include "image/texel_layout.h"
 
 namespace relief {
@@ -205,6 +207,15 @@ const char* get_input_name(MaterialInput input) { return get_input_kind(input).n
 const InputTexture* find_input_texture(const Material& material, MaterialInput input) {
     const auto found = std::ranges::find(material.textures, input, &InputTexture::input);
     return found == material.textures.end() ? nullptr : &*found;
+}
+
+void set_input_texture(Material& material, MaterialInput input, std::shared_ptr<const Texture> texture,
+                       MapFilter filter) {
+    std::erase_if(material.textures, [&](const InputTexture& other) { return other.input == input; });
+    if (!texture) return;
+    InputTexture& added = material.textures.emplace_back();
+    added.input = input, added.filter = filter;
+    added.tiles.push_back({kFirstUdim, std::move(texture)});
 }
 
 FactorRange find_factors(const InputTexture& texture) {

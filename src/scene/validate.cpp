@@ -249,15 +249,9 @@ void check_material(const Material& material, size_t index) {
     check_glass(material, where);
     check_range(where, "scale of normal_texture", material.normal_scale, 0, kMaxNormalScale);
     check_input_textures(material, where);
-    visit_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
-        if (filter == MapFilter::mip || filter > MapFilter::bspline)
-            fail(where, "a filter of its textures is neither none, cubic nor bspline");
+    visit_textures(material, [&](const char* name, const auto& texture, MapFilter) {
         if (texture) check_texture(fmt::format("{}, {}", where, name), *texture);
     });
-    if (material.normal_texture && material.normal_texture->channel_count < 3)
-        fail(fmt::format("{}, normal_texture", where),
-             fmt::format("has {} channels, and a normal has three", material.normal_texture->channel_count),
-             "export it as RGB; a height map is a displacement");
 }
 
 /// Largest coordinate of a transformed box, in double precision: it may be beyond all floats.

@@ -33,12 +33,6 @@ scalar::InputTextureData make_texture(const PlacedTexture& texture, const Device
             device_scene.uv_set_index(texture.uv_set)};
 }
 
-bool has_normal(const TexturedMaterial& material) {
-    return std::ranges::any_of(material.textures, [](const PlacedTexture& texture) {
-        return texture.place.first == scalar::kInputNormal;
-    });
-}
-
 } // namespace
 
 std::vector<uint32_t> join_inputs(std::vector<scalar::MaterialData> materials, const PreparedScene& scene,
@@ -55,7 +49,7 @@ std::vector<uint32_t> join_inputs(std::vector<scalar::MaterialData> materials, c
         inputs.push_back({material.numbers,
                           material.constants,
                           {},
-                          has_normal(material) ? 1u : 0u,
+                          material.places,
                           uint32_t(first_texture + textures.size()),
                           uint32_t(material.textures.size())});
         for (const PlacedTexture& texture : material.textures)
@@ -64,6 +58,8 @@ std::vector<uint32_t> join_inputs(std::vector<scalar::MaterialData> materials, c
     for (size_t k = 0; k < materials.size(); ++k) {
         const uint32_t place = textured.empty() ? kNoIndex : textured.of_material[k];
         materials[k].inputs = place == kNoIndex ? scalar::kNone : uint32_t(first_input + place);
+        materials[k].has_vertex_numbers =
+            place != kNoIndex && textured.list[place].has_vertex_numbers ? 1 : 0;
         const uint32_t record = scene.layers.empty() ? kNoIndex : scene.layers.record_of_material[k];
         if (place != kNoIndex && record != kNoIndex) inputs[place].grid = scene.layers.grids[record];
     }

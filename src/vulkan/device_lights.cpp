@@ -30,13 +30,8 @@ Buffer make_table(const Device& device, const char* name, TexelFormat format, co
     return buffer;
 }
 
-std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
-                                                 const DeviceScene& device_scene) {
+std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene) {
     std::vector<scalar::MaterialData> result;
-    const auto find_index = [&](const std::shared_ptr<const Texture>& texture, MapFilter filter) {
-        const uint32_t index = device_scene.texture_index(texture.get());
-        return texture && is_smooth(filter) ? index | scalar::kSplineTexture : index;
-    };
     const std::vector<uint32_t>& groups = scene.light_groups.of_material;
     for (const Material& material : scene.materials)
         result.push_back({material.base_color,
@@ -44,19 +39,15 @@ std::vector<scalar::MaterialData> make_materials(const PreparedScene& scene,
                           material.emission,
                           material.metallic,
                           material.ior,
-                          find_index(material.base_color_texture, material.base_color_filter),
-                          find_index(material.roughness_texture, material.roughness_filter),
-                          find_index(material.metallic_texture, material.metallic_filter),
-                          find_index(material.opacity_texture, material.opacity_filter),
                           material.opacity,
-                          find_index(material.normal_texture, material.normal_filter),
                           {material.normal_scale, material.normal_scale * (material.normal_flip_y ? -1 : 1)},
                           groups.empty() ? kNoIndex : groups[result.size()],
                           0,
                           {},
                           0,
                           {},
-                          scalar::kNone});
+                          scalar::kNone,
+                          0});
     for (size_t k = 0; k < result.size(); ++k) {
         const scalar::GlassParameters* glass = scene.glass.find(uint32_t(k));
         if (!glass) continue;
@@ -128,7 +119,7 @@ std::vector<scalar::EmitterData> make_emitters(const EmitterTable& table, const 
 
 DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, const DeviceScene& device_scene)
     : materials_(make_table(device, "materials", TexelFormat::none,
-                            join_inputs(make_materials(scene, device_scene), scene, device_scene))) {
+                            join_inputs(make_materials(scene), scene, device_scene))) {
     EnvironmentDistribution distribution;
     if (scene.environment) {
         distribution = make_environment_distribution(*scene.environment);

@@ -41,6 +41,12 @@ void set_constant(std::vector<uint32_t>& constants, uint32_t number, uint32_t va
     constants[number] = value;
 }
 
+bool has_placed_textures(const TexturedMaterial& material) {
+    return std::ranges::any_of(material.textures, [](const PlacedTexture& texture) {
+        return texture.is_udim || texture.wrap != WrapMode::repeat;
+    });
+}
+
 static_assert(sizeof(WideNode) == scalar::kWideNodeUnits * sizeof(NodeTexels));
 static_assert(WideNode::kLeafFlag == scalar::kLeafFlag && WideNode::kMaxLeafFirst == scalar::kLeafFirstMask);
 
@@ -189,7 +195,8 @@ std::vector<uint32_t> DeviceScene::add_collecting(std::vector<uint32_t> constant
 std::vector<uint32_t> DeviceScene::add_normal_maps(std::vector<uint32_t> constants) const {
     constants = add_filter(std::move(constants));
     set_constant(constants, scalar::kNormalMapsConstant, has_normal_maps_ ? 1 : 0);
-    set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
+    set_constant(constants, scalar::kVertexNumbersConstant, has_vertex_numbers_ ? 1 : 0);
+    set_constant(constants, scalar::kPlacedTexturesConstant, has_placed_textures_ ? 1 : 0);
     set_constant(constants, scalar::kUvSetsConstant, uv_sets_.empty() ? 0 : 1);
     set_constant(constants, scalar::kAnisotropyConstant, has_anisotropy_ ? 1 : 0);
     return constants;
@@ -200,7 +207,8 @@ std::vector<uint32_t> DeviceScene::add_layers(std::vector<uint32_t> constants) c
     set_constant(constants, scalar::kLayersConstant, has_layers_ ? 1 : 0);
     set_constant(constants, scalar::kGlassConstant, has_glass_ ? 1 : 0);
     set_constant(constants, scalar::kTerminatorsConstant, uint32_t(terminators_));
-    set_constant(constants, scalar::kInputTexturesConstant, has_input_textures_ ? 1 : 0);
+    set_constant(constants, scalar::kVertexNumbersConstant, has_vertex_numbers_ ? 1 : 0);
+    set_constant(constants, scalar::kPlacedTexturesConstant, has_placed_textures_ ? 1 : 0);
     set_constant(constants, scalar::kUvSetsConstant, uv_sets_.empty() ? 0 : 1);
     set_constant(constants, scalar::kAnisotropyConstant, has_anisotropy_ ? 1 : 0);
     return constants;
@@ -231,7 +239,8 @@ void DeviceScene::add_textures(const Device& device, const PreparedScene& scene)
     terminators_ = scene.terminators;
     has_catchers_ = scene.has_shadow_catchers;
     has_glass_ = !scene.glass.empty();
-    has_input_textures_ = !scene.textured.empty();
+    has_vertex_numbers_ = scene.textured.has_vertex_numbers;
+    has_placed_textures_ = std::ranges::any_of(scene.textured.list, has_placed_textures);
     has_anisotropy_ = scene.has_anisotropy;
     buffers_.push_back({scalar::kBindFloatTexels, store.make_float_buffer(device)});
     buffers_.push_back({scalar::kBindHalfTexels, store.make_half_buffer(device)});

@@ -47,12 +47,13 @@ class DeviceScene {
     std::vector<uint32_t> add_contents(std::vector<uint32_t> constants, LodRule lod) const;
     /// The same with scalar::kCollectsConstant.
     static std::vector<uint32_t> add_collecting(std::vector<uint32_t> constants);
-    /// The same as add_filter, and scalar::kNormalMapsConstant, kInputTexturesConstant, kUvSetsConstant and
-    /// kAnisotropyConstant, for the kernel that finds shading normals.
+    /// The same as add_filter, and scalar::kNormalMapsConstant, kVertexNumbersConstant,
+    /// kPlacedTexturesConstant, kUvSetsConstant and kAnisotropyConstant, for the kernel that finds shading
+    /// normals.
     std::vector<uint32_t> add_normal_maps(std::vector<uint32_t> constants) const;
     /// That of add_filter, and scalar::kLayersConstant, kGlassConstant, kTerminatorsConstant,
-    /// kInputTexturesConstant, kUvSetsConstant and kAnisotropyConstant, for a kernel that knows what
-    /// scatters.
+    /// kVertexNumbersConstant, kPlacedTexturesConstant, kUvSetsConstant and kAnisotropyConstant, for a kernel
+    /// that knows what scatters.
     std::vector<uint32_t> add_layers(std::vector<uint32_t> constants) const;
 
   private:
@@ -85,7 +86,7 @@ class DeviceScene {
     bool has_catchers_ = false, has_bicubic_ = false, has_polygons_ = false, has_tiles_ = false;
     bool has_tile_borders_ = false;
     Terminators terminators_ = Terminators::none;
-    bool has_input_textures_ = false, has_anisotropy_ = false;
+    bool has_vertex_numbers_ = false, has_placed_textures_ = false, has_anisotropy_ = false;
     struct Binding {
         uint32_t number;
         Buffer buffer;

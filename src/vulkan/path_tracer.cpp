@@ -62,11 +62,11 @@ Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint6
                            .purpose = Purpose::ray_buffers});
 }
 
-/// Of points, the numbers of textured materials behind them and tangents behind these, as paths.glsl has it.
+/// Of points, the numbers of vertices behind them and tangents behind these, as paths.glsl has it.
 uint64_t find_point_bytes(const PreparedScene& scene, uint64_t capacity) {
     constexpr uint64_t point = sizeof(scalar::SurfacePointData), numbers = sizeof(scalar::InputNumbers);
     uint64_t bytes = capacity * point;
-    if (!scene.textured.empty()) bytes = (bytes / numbers + 1 + capacity) * numbers;
+    if (scene.textured.has_vertex_numbers) bytes = (bytes / numbers + 1 + capacity) * numbers;
     return bytes + (scene.has_anisotropy ? capacity * sizeof(Vec3f) : 0);
 }
 

@@ -32,7 +32,7 @@ TEST(CyclesScene, is_white_and_lit_by_the_sky_alone) {
         ASSERT_EQ(scene.materials.size(), 1u) << name;
         EXPECT_EQ(scene.materials[0].ior, 1) << name;
         EXPECT_EQ(scene.materials[0].roughness, 1) << name;
-        EXPECT_FALSE(scene.materials[0].base_color_texture) << name;
+        EXPECT_TRUE(scene.materials[0].textures.empty()) << name;
         EXPECT_NE(scene.objects.at(0).displacement, kNoIndex) << name;
         EXPECT_NO_THROW(validate_scene(scene)) << name;
     }

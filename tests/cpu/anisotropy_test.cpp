@@ -143,13 +143,13 @@ double render_furnace(const Material& material) {
 }
 
 TEST(Anisotropy, of_textured_roughness_returns_all_light) {
-    Material member = make_brushed(0.9f, 0.7f, 0.5f);
-    member.roughness_texture = make_grey_texture({0.3f, 1, 0.6f, 0.8f});
-    EXPECT_NEAR(render_furnace(member), 1, 0.015);
-    Material placed = add_brushed_coat(make_brushed(0.9f, 0.7f, 0.5f));
-    placed.textures = {make_input_texture(MaterialInput::roughness, {0.3f, 1, 0.6f, 0.8f}),
+    Material rough = make_brushed(0.9f, 0.7f, 0.5f);
+    rough.textures = {make_input_texture(MaterialInput::roughness, {0.3f, 1, 0.6f, 0.8f})};
+    EXPECT_NEAR(render_furnace(rough), 1, 0.015);
+    Material coated = add_brushed_coat(make_brushed(0.9f, 0.7f, 0.5f));
+    coated.textures = {make_input_texture(MaterialInput::roughness, {0.3f, 1, 0.6f, 0.8f}),
                        make_input_texture(MaterialInput::coat_weight, {0, 1})};
-    EXPECT_NEAR(render_furnace(placed), 1, 0.015);
+    EXPECT_NEAR(render_furnace(coated), 1, 0.015);
     Material colored = make_brushed(0.6f, 0.7f, 1);
     colored.textures = {make_input_texture(MaterialInput::base_color, {1, 1})};
     EXPECT_NEAR(render_furnace(colored), 1, 0.015);

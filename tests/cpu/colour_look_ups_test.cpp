@@ -110,28 +110,33 @@ TEST(ConeKernels, draw_for_many_points_the_directions_of_each) {
 }
 
 /// An object for each of some materials: plain, with a texture of a colour (two share one), of a colour that
-/// is a B-spline, of numbers, and of both; with a coat; of glass.
+/// is a B-spline, of numbers, and of both; with a coat; of glass; of a colour with a scale and an offset,
+/// and of one that is mirrored.
 Scene make_materials() {
     Scene scene = test::make_body_scene(
         test::make_cube_sphere(2),
         test::make_displacement(test::make_hashed_texture(4, 4, 3, false), DisplacementSpace::object));
     const auto first = test::make_hashed_texture(7, 5, 3, true),
                second = test::make_hashed_texture(64, 32, 1, false);
-    scene.materials.resize(9);
+    scene.materials.resize(11);
     for (size_t k = 0; k < scene.materials.size(); ++k) {
-        const float number = float(k + 1) / 10;
+        const float number = float(k + 1) / 12;
         scene.materials[k].base_color = {number, 1 - number, 0.5f};
         scene.materials[k].roughness = number, scene.materials[k].metallic = 1 - number;
         scene.materials[k].ior = 1 + number, scene.materials[k].emission = {number, 0, 0};
     }
-    scene.materials[1].base_color_texture = scene.materials[2].base_color_texture = first;
-    scene.materials[3].base_color_texture = second;
-    scene.materials[4].base_color_texture = first;
-    scene.materials[4].base_color_filter = MapFilter::bspline;
-    scene.materials[5].metallic_texture = scene.materials[5].roughness_texture = second;
-    scene.materials[6] = scene.materials[5], scene.materials[6].base_color_texture = first;
+    const auto set = [&](size_t k, MaterialInput input, const auto& texture) {
+        set_input_texture(scene.materials[k], input, texture);
+    };
+    for (const size_t k : {1, 2, 4, 8, 9, 10}) set(k, MaterialInput::base_color, first);
+    set(3, MaterialInput::base_color, second);
+    scene.materials[4].textures[0].filter = MapFilter::bspline;
+    set(5, MaterialInput::metallic, second), set(5, MaterialInput::roughness, second);
+    scene.materials[6] = scene.materials[5], set(6, MaterialInput::base_color, first);
     scene.materials[7].coat_weight = 0.5f;
-    scene.materials[8].transmission_weight = 1, scene.materials[8].base_color_texture = first;
+    scene.materials[8].transmission_weight = 1;
+    scene.materials[9].textures[0].uv_scale = {3, -2}, scene.materials[9].textures[0].uv_offset = {0.25f, 7};
+    scene.materials[10].textures[0].wrap = WrapMode::mirror;
     const Object object = scene.objects[0];
     scene.objects.clear();
     for (uint32_t k = 0; k < scene.materials.size(); ++k) {
@@ -154,10 +159,19 @@ cpu::PointMaterial find_material(const PreparedScene& scene, uint32_t instance, 
                          scene.layers.record_of_material[index],
                          glass,
                          glass};
-    if (const auto& texture = material.base_color_texture)
-        m.base_color = m.base_color * cpu::fetch_texture(*texture, material.base_color_filter, uv);
-    if (const auto& texture = material.roughness_texture) m.roughness *= cpu::fetch_texture(*texture, uv).x;
-    if (const auto& texture = material.metallic_texture) m.metallic *= cpu::fetch_texture(*texture, uv).x;
+    const auto fetch = [&](MaterialInput input) {
+        const InputTexture* texture = find_input_texture(material, input);
+        if (!texture) return Vec3f{1, 1, 1};
+        const Vec2f scale = texture->uv_scale, offset = texture->uv_offset;
+        const Vec2f at{uv.x * scale.x + offset.x, uv.y * scale.y + offset.y};
+        const Texture& texels = *texture->tiles[0].texture;
+        return texture->wrap == WrapMode::repeat
+                   ? cpu::fetch_texture(texels, texture->filter, at)
+                   : cpu::fetch_wrapped(texels, texture->filter, texture->wrap, at);
+    };
+    m.base_color = m.base_color * fetch(MaterialInput::base_color);
+    m.roughness *= fetch(MaterialInput::roughness).x;
+    m.metallic *= fetch(MaterialInput::metallic).x;
     m.base_color = scalar::limit_color(m.base_color);
     m.roughness = std::clamp(m.roughness, 0.0f, 1.0f), m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     return m;

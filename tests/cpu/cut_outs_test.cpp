@@ -34,7 +34,7 @@ std::vector<float> render_pixels(Scene scene, int bounces) {
 TEST(CutOuts, that_stop_nothing_are_not_there_and_those_that_stop_all_are_opaque) {
     Material opaque = make_matte(0.8f), absent = opaque, whole = opaque;
     absent.opacity = 0;
-    whole.opacity_texture = make_number_texture(1);
+    set_input_texture(whole, MaterialInput::opacity, make_number_texture(1));
     Scene bare = make_body(opaque);
     bare.objects.erase(bare.objects.begin());
     EXPECT_EQ(render_pixels(make_body(absent), 3), render_pixels(bare, 3));
@@ -44,7 +44,8 @@ TEST(CutOuts, that_stop_nothing_are_not_there_and_those_that_stop_all_are_opaque
 TEST(CutOuts, by_texture_are_as_by_number) {
     Material number = make_matte(0.8f), texture = number;
     number.opacity = 0.25f;
-    texture.opacity = 0.5f, texture.opacity_texture = make_number_texture(0.5f);
+    texture.opacity = 0.5f;
+    set_input_texture(texture, MaterialInput::opacity, make_number_texture(0.5f));
     EXPECT_EQ(render_pixels(make_body(texture), 2), render_pixels(make_body(number), 2));
     EXPECT_NE(render_pixels(make_body(number), 2), render_pixels(make_body(make_matte(0.8f)), 2));
 }

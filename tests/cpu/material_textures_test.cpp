@@ -1,5 +1,6 @@
 // Textures of materials multiply their numbers.
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,14 +27,14 @@ std::vector<float> render_pixels(const Material& material) {
 void expect_factors(const Material& plain) {
     Material by_number = plain, by_texture = plain, unchanged = plain;
     by_number.metallic = 0.25f * plain.metallic, by_number.roughness = 0.5f * plain.roughness;
-    by_texture.metallic_texture = make_number_texture(0.25f),
-    by_texture.roughness_texture = make_number_texture(0.5f);
+    by_texture.textures = {make_input_texture(MaterialInput::metallic, {0.25f}),
+                           make_input_texture(MaterialInput::roughness, {0.5f})};
     EXPECT_EQ(render_pixels(by_texture), render_pixels(by_number));
-    unchanged.metallic_texture = make_number_texture(1);
+    unchanged.textures = {make_input_texture(MaterialInput::metallic, {1})};
     EXPECT_EQ(render_pixels(unchanged), render_pixels(plain));
     EXPECT_NE(render_pixels(by_number), render_pixels(plain));
     Material beyond = plain;
-    beyond.metallic = 1, beyond.metallic_texture = make_number_texture(7);
+    beyond.metallic = 1, beyond.textures = {make_input_texture(MaterialInput::metallic, {7})};
     Material whole = plain;
     whole.metallic = 1;
     EXPECT_EQ(render_pixels(beyond), render_pixels(whole)) << "limited to [0, 1]";
@@ -45,12 +46,12 @@ TEST(MaterialTextures, multiply_roughness_and_metallic) {
     expect_factors(metal);
 }
 
-/// Rests of layers are between rows of roughness where that is textured: there the metal alone is compared.
 TEST(MaterialTextures, multiply_the_metallic_of_a_base_under_layers) {
     Material coated;
     coated.base_color = {0.9f, 0.6f, 0.3f}, coated.metallic = 1, coated.coat_weight = 0.5f;
     Material by_number = coated, by_texture = coated;
-    by_number.metallic = 0.25f, by_texture.metallic_texture = make_number_texture(0.25f);
+    by_number.metallic = 0.25f;
+    by_texture.textures = {make_input_texture(MaterialInput::metallic, {0.25f})};
     EXPECT_EQ(render_pixels(by_texture), render_pixels(by_number));
     EXPECT_NE(render_pixels(by_number), render_pixels(coated));
 }
@@ -125,23 +126,31 @@ TEST(MaterialTextures, of_one_value_are_that_number_for_glass_and_cut_outs) {
     expect_texture_is_number(make_matte(0.8f), MaterialInput::opacity);
 }
 
-TEST(MaterialTextures, with_a_place_are_those_without_where_it_says_nothing) {
-    Material own = make_rich_material(), placed = own;
-    own.base_color_texture = make_grey_texture({0.2f, 0.9f, 0.5f, 0.7f});
-    placed.textures = {{.input = MaterialInput::base_color, .tiles = {{1001, own.base_color_texture}}}};
-    EXPECT_LE(find_difference(render_inputs(placed), render_inputs(own)), 2e-6f);
-    Material cut = make_matte(0.8f), placed_cut = cut;
-    cut.opacity_texture = own.base_color_texture;
-    placed_cut.textures = {{.input = MaterialInput::opacity, .tiles = {{1001, cut.opacity_texture}}}};
-    EXPECT_EQ(render_inputs(placed_cut), render_inputs(cut));
-    Material bumpy = make_matte(0.8f), placed_bumpy = bumpy;
-    auto normals = std::make_shared<Texture>();
-    normals->width = 2, normals->height = 1, normals->channel_count = 3;
-    normals->floats = {0.7f, 0.5f, 0.9f, 1, 0.3f, 0.6f, 0.8f, 1};
-    bumpy.normal_texture = normals;
-    placed_bumpy.textures = {{.input = MaterialInput::normal, .tiles = {{1001, normals}}}};
-    EXPECT_EQ(render_inputs(placed_bumpy), render_inputs(bumpy));
-    EXPECT_NE(render_inputs(bumpy), render_inputs(make_matte(0.8f)));
+TEST(MaterialTextures, make_numbers_of_vertices_only_beyond_what_points_have) {
+    using enum MaterialInput;
+    const std::set<MaterialInput> of_points = {base_color, roughness, metallic, opacity, normal};
+    for (const MaterialInputKind& kind : list_material_inputs()) {
+        Material material = make_rich_material();
+        material.textures = {make_input_texture(kind.input, {0.5f, 1})};
+        const TexturedMaterials made = make_textured_materials({Material(), material});
+        EXPECT_EQ(made.has_vertex_numbers, !of_points.contains(kind.input)) << kind.name;
+        EXPECT_EQ(made.find(0), nullptr);
+        EXPECT_EQ(made.find(1)->places, 1u << find_input_place(kind.input).first) << kind.name;
+    }
+}
+
+TEST(MaterialTextures, of_points_come_first) {
+    Material material;
+    for (const MaterialInput input : {MaterialInput::base_weight, MaterialInput::roughness,
+                                      MaterialInput::opacity, MaterialInput::base_color})
+        material.textures.push_back(make_input_texture(input, {0.5f}));
+    const TexturedMaterials made = make_textured_materials({material});
+    const TexturedMaterial& found = made.list.at(0);
+    EXPECT_EQ(found.point_count, 2u);
+    const uint32_t expected[] = {scalar::kInputRoughness, scalar::kInputBaseColor, scalar::kInputBaseColor,
+                                 scalar::kInputOpacity};
+    for (size_t k = 0; k < 4; ++k) EXPECT_EQ(found.textures.at(k).place.first, expected[k]) << k;
+    EXPECT_EQ(found.places, scalar::kColorPlace | scalar::kOpacityPlace | 1u << scalar::kInputRoughness);
 }
 
 float find_opacity_at(const InputTexture& texture, const Vec2f& uv) {
@@ -149,8 +158,8 @@ float find_opacity_at(const InputTexture& texture, const Vec2f& uv) {
     material.textures = {texture};
     const TexturedMaterials made = make_textured_materials({material});
     const Surface surface;
-    const scalar::InputNumbers found =
-        cpu::find_inputs(made.list.at(0), made.list.at(0).numbers, {surface, 0, {}, uv});
+    const scalar::InputNumbers found = cpu::find_inputs(made.list.at(0).textures, scalar::kOpacityPlace,
+                                                        made.list.at(0).numbers, {surface, 0, {}, uv});
     return found.word[scalar::kInputOpacity];
 }
 
@@ -220,6 +229,10 @@ TEST(MaterialTextures, of_one_value_need_no_more_rows_of_albedos) {
     EXPECT_EQ(count_rows(), 17u);
     material.textures.push_back(make_input_texture(MaterialInput::fuzz_weight, {0.5f, 1}));
     EXPECT_EQ(count_rows(), 81u);
+    material.textures = {make_input_texture(MaterialInput::roughness, {0.5f})};
+    EXPECT_EQ(count_rows(), 1u);
+    material.textures = {make_input_texture(MaterialInput::roughness, {0.5f, 1})};
+    EXPECT_EQ(count_rows(), 16u);
 }
 
 } // namespace

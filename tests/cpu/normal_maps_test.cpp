@@ -56,7 +56,7 @@ Displacement make_heights(const Field& height) {
 
 Material make_mapped(std::shared_ptr<const Texture> texture) {
     Material material = make_matte(0.8f);
-    material.normal_texture = std::move(texture);
+    set_input_texture(material, MaterialInput::normal, std::move(texture));
     return material;
 }
 

@@ -33,7 +33,7 @@ Material make_coated() {
 
 Material make_cut_out(float opacity) {
     Material m = make_matte(0.8f);
-    m.opacity_texture = make_number_texture(opacity);
+    set_input_texture(m, MaterialInput::opacity, make_number_texture(opacity));
     return m;
 }
 

@@ -131,8 +131,9 @@ MaterialLayers make_layers() {
     materials[3].fuzz_weight = 1, materials[3].fuzz_roughness = 0.2f;
     materials[4].metallic = 1, materials[4].specular_weight = 0.8f;
     auto texture = std::make_shared<Texture>();
-    texture->width = texture->height = 1, texture->floats = {1, 1, 1, 1};
-    materials[5].coat_weight = 0.4f, materials[5].roughness_texture = texture;
+    texture->width = 2, texture->height = 1, texture->floats = {1, 1, 1, 1, 0, 0, 0, 1};
+    materials[5].coat_weight = 0.4f;
+    set_input_texture(materials[5], MaterialInput::roughness, texture); // rows of the albedo table
     materials[6].specular_roughness_anisotropy = 0.7f;
     materials[7] = materials[5], materials[7].specular_roughness_anisotropy = 0.4f;
     materials[7].coat_roughness = 0.5f, materials[7].coat_roughness_anisotropy = 0.8f;

@@ -321,7 +321,7 @@ TEST(Terminator, normal_maps_lift_nothing) {
     auto texture = std::make_shared<Texture>();
     texture->width = texture->height = 1, texture->channel_count = 3;
     texture->floats = {0.85f, 0.5f, 0.85f, 1};
-    material.normal_texture = texture;
+    set_input_texture(material, MaterialInput::normal, texture);
     add_object(scene, std::move(floor), material);
     Light sun;
     sun.direction = {-1, 0.1f, 0}, sun.angle_degrees = 0;

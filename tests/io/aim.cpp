@@ -7,6 +7,7 @@
 #include "math/vec.h"
 #include "relief/aim.h"
 #include "relief/io.h"
+#include "support/input_textures.h"
 #include "test_files.h"
 
 namespace relief {
@@ -261,8 +262,8 @@ TEST_F(Aim, a_copy_of_a_scene_file_keeps_its_keys_and_moves_its_paths) {
     const Scene read = load_scene(file);
     EXPECT_EQ(read.camera.to, (Vec3f{0, 1, 0}));
     EXPECT_EQ(read.materials[0].roughness, 0.25f);
-    ASSERT_TRUE(read.materials[0].base_color_texture);
-    ASSERT_TRUE(read.materials[0].normal_texture);
+    ASSERT_TRUE(test::get_texture(read.materials[0], MaterialInput::base_color));
+    ASSERT_TRUE(test::get_texture(read.materials[0], MaterialInput::normal));
     EXPECT_EQ(read.objects[0].world_from_object, scene.objects[0].world_from_object);
     std::ifstream text(file);
     const std::string content{std::istreambuf_iterator<char>(text), {}};

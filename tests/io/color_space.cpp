@@ -7,6 +7,7 @@
 #include "io/scene/scene_reader.h"
 #include "io/test_files.h"
 #include "relief/io.h"
+#include "support/input_textures.h"
 
 namespace relief {
 
@@ -17,7 +18,8 @@ class ColorSpaces : public FileTest {
         const std::string text = R"({"materials": {"a": {"base_color_texture": {"file": ")" + file +
                                  R"(", "color_space": ")" + space + R"("}}}})";
         const Scene scene = parse_scene(text, folder_, "s.json");
-        const std::vector<float>& floats = scene.materials.at(0).base_color_texture->floats;
+        const std::vector<float>& floats =
+            test::get_texture(scene.materials.at(0), MaterialInput::base_color)->floats;
         return {floats.at(0), floats.at(1), floats.at(2)};
     }
     void write_color(const std::vector<float>& rgb) const {

@@ -18,6 +18,7 @@
 
 #include "io/test_files.h"
 #include "relief/io.h"
+#include "support/input_textures.h"
 
 namespace relief {
 
@@ -226,7 +227,7 @@ TEST_F(ExrLayers, of_scene_files_are_named_by_keys) {
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
     EXPECT_EQ(first(*scene.displacements[0].tiles[0].texture), (std::vector<float>{0, 0, 0.25f}));
     EXPECT_EQ(first(*scene.environment->texture), (std::vector<float>{1, 1, 1}));
-    EXPECT_EQ(scene.materials[0].base_color_texture->floats[0], 0.5f);
+    EXPECT_EQ(test::get_texture(scene.materials[0], MaterialInput::base_color)->floats[0], 0.5f);
     const Scene doubtful = load("");
     ASSERT_EQ(doubtful.warnings.size(), 1u);
     EXPECT_HAS(doubtful.warnings[0], "leaves out");

@@ -6,6 +6,7 @@
 #include "io/scene_files.h"
 #include "relief/io.h"
 #include "relief/shot.h"
+#include "support/input_textures.h"
 
 namespace relief {
 
@@ -43,8 +44,10 @@ TEST_F(SceneFiles, assets_in_memory_make_the_scene_of_their_files) {
     EXPECT_EQ(made.meshes[0].creases, (std::vector<Crease>{{0, 1, 2.5f}}));
     EXPECT_EQ(made.meshes[0].subdivision.level, 2);
     EXPECT_EQ(made.meshes[0].name, "plane");
-    EXPECT_EQ(made.materials[0].base_color_texture->floats, filed.materials[0].base_color_texture->floats);
-    EXPECT_EQ(made.materials[0].roughness_texture->floats, filed.materials[0].roughness_texture->floats);
+    EXPECT_EQ(test::get_texture(made.materials[0], MaterialInput::base_color)->floats,
+              test::get_texture(filed.materials[0], MaterialInput::base_color)->floats);
+    EXPECT_EQ(test::get_texture(made.materials[0], MaterialInput::roughness)->floats,
+              test::get_texture(filed.materials[0], MaterialInput::roughness)->floats);
     EXPECT_EQ(made.displacements[0].tiles[0].texture, assets.textures["map"]) << "data are not copied";
     EXPECT_EQ(made.environment->texture->floats, filed.environment->texture->floats);
     EXPECT_EQ(made.warnings, filed.warnings);
@@ -112,7 +115,8 @@ TEST_F(SceneFiles, another_text_goes_on_with_the_pictures_of_the_last_one) {
     next.kept_meshes["plane"] = hash_mesh(first.meshes[0]);
     shot.change_text(text, next);
     const Scene second = shot.load(1);
-    EXPECT_EQ(second.materials[0].base_color_texture, first.materials[0].base_color_texture);
+    EXPECT_EQ(test::get_texture(second.materials[0], MaterialInput::base_color),
+              test::get_texture(first.materials[0], MaterialInput::base_color));
     EXPECT_EQ(second.displacements[0].tiles[0].texture, first.displacements[0].tiles[0].texture);
     EXPECT_EQ(second.meshes[0].name, "plane");
     EXPECT_TRUE(second.meshes[0].face_sizes.empty());
@@ -124,7 +128,8 @@ TEST_F(SceneFiles, another_text_goes_on_with_the_pictures_of_the_last_one) {
     next.textures["map"] = std::make_shared<Texture>(*assets.textures["map"]);
     shot.change_text(text, next);
     const Scene third = shot.load(1);
-    EXPECT_EQ(third.materials[0].base_color_texture->width, 1u) << "the file has changed";
+    EXPECT_EQ(test::get_texture(third.materials[0], MaterialInput::base_color)->width, 1u)
+        << "the file has changed";
     EXPECT_EQ(third.displacements[0].tiles[0].texture, next.textures["map"]);
     EXPECT_NE(third.environment->texture, second.environment->texture) << "made of the map";
     EXPECT_NE(third.hash, first.hash);

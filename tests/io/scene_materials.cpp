@@ -5,6 +5,7 @@
 
 #include "io/scene_files.h"
 #include "relief/io.h"
+#include "support/input_textures.h"
 
 namespace relief {
 
@@ -85,13 +86,15 @@ TEST_F(SceneFiles, normal_maps_are_read_as_they_are) {
     const Scene scene = parse(with_material(R"("normal_texture": {"file": "normal.png", "filter": "cubic",
                                                                   "scale": 2, "flip_y": true})"));
     const Material& material = scene.materials.at(0);
-    EXPECT_EQ(material.normal_texture->floats, (std::vector<float>{1, 128 / 255.f, 0, 0}));
-    EXPECT_EQ(material.normal_filter, MapFilter::cubic);
+    EXPECT_EQ(test::get_texture(material, MaterialInput::normal)->floats,
+              (std::vector<float>{1, 128 / 255.f, 0, 0}));
+    EXPECT_EQ(test::get_filter(material, MaterialInput::normal), MapFilter::cubic);
     EXPECT_EQ(material.normal_scale, 2);
     EXPECT_TRUE(material.normal_flip_y);
-    EXPECT_EQ(
-        parse(with_material(R"("geometry_normal": "normal.png")")).materials.at(0).normal_texture->floats,
-        material.normal_texture->floats);
+    EXPECT_EQ(test::get_texture(parse(with_material(R"("geometry_normal": "normal.png")")).materials.at(0),
+                                MaterialInput::normal)
+                  ->floats,
+              test::get_texture(material, MaterialInput::normal)->floats);
     EXPECT_HAS(error_of(with_material(R"("geometry_normal": "normal.png", "normal_texture": "normal.png")")),
                "means the same as 'normal_texture'");
     EXPECT_HAS(error_of(with_material(R"("normal_texture": {"file": "normal.png", "channel": "g"})")),

@@ -10,6 +10,7 @@
 #include "math/vec.h"
 #include "relief/io.h"
 #include "scene/displacement_conventions.h"
+#include "support/input_textures.h"
 
 namespace relief {
 
@@ -66,11 +67,12 @@ TEST_F(SceneFiles, every_field_is_read) {
     EXPECT_EQ(scene.camera.shift, (Vec2f{0.25f, -1}));
     EXPECT_EQ(scene.environment->texture->floats.at(3), 4);
     EXPECT_EQ(scene.materials.at(0).ior, 1.3f);
-    EXPECT_NEAR(scene.materials[0].base_color_texture->floats.at(1), 0.2158605f, 1e-6f);
-    EXPECT_EQ(scene.materials[0].roughness_texture->floats.at(1), 128 / 255.f);
-    EXPECT_EQ(scene.materials[0].metallic_texture->floats.at(0), 128 / 255.f);
-    EXPECT_EQ(scene.materials[0].base_color_filter, MapFilter::none);
-    EXPECT_EQ(scene.materials[0].roughness_filter, MapFilter::cubic);
+    EXPECT_NEAR(test::get_texture(scene.materials[0], MaterialInput::base_color)->floats.at(1), 0.2158605f,
+                1e-6f);
+    EXPECT_EQ(test::get_texture(scene.materials[0], MaterialInput::roughness)->floats.at(0), 1);
+    EXPECT_EQ(test::get_texture(scene.materials[0], MaterialInput::metallic)->floats.at(0), 128 / 255.f);
+    EXPECT_EQ(test::get_filter(scene.materials[0], MaterialInput::base_color), MapFilter::none);
+    EXPECT_EQ(test::get_filter(scene.materials[0], MaterialInput::roughness), MapFilter::cubic);
     const Displacement& map = scene.displacements.at(0);
     EXPECT_EQ(map.axes.axis, (std::array<uint8_t, 3>{0, 2, 1}));
     EXPECT_EQ(map.midlevel, (Vec3f{.25f, .25f, .25f}));
@@ -330,16 +332,20 @@ TEST_F(SceneFiles, a_saved_scene_loads_as_the_same_scene) {
         EXPECT_EQ(read.objects[i].is_shadow_catcher, i == 1);
     }
     const Material &material = read.materials.at(0), &given = scene.materials[0];
-    EXPECT_EQ(material.base_color_filter, MapFilter::bspline);
+    EXPECT_EQ(test::get_filter(material, MaterialInput::base_color), MapFilter::bspline);
     EXPECT_EQ(material.opacity, 0.1f);
-    EXPECT_EQ(material.metallic_texture->floats, given.metallic_texture->floats);
-    EXPECT_EQ(material.metallic_texture->floats.at(0), 2);
-    EXPECT_EQ(material.opacity_texture->floats, given.opacity_texture->floats);
-    EXPECT_EQ(material.opacity_filter, MapFilter::cubic);
-    EXPECT_EQ(material.normal_texture->floats, given.normal_texture->floats);
+    EXPECT_EQ(test::get_texture(material, MaterialInput::metallic)->floats,
+              test::get_texture(given, MaterialInput::metallic)->floats);
+    EXPECT_EQ(test::get_texture(material, MaterialInput::metallic)->floats.at(0), 2);
+    EXPECT_EQ(test::get_texture(material, MaterialInput::opacity)->floats,
+              test::get_texture(given, MaterialInput::opacity)->floats);
+    EXPECT_EQ(test::get_filter(material, MaterialInput::opacity), MapFilter::cubic);
+    EXPECT_EQ(test::get_texture(material, MaterialInput::normal)->floats,
+              test::get_texture(given, MaterialInput::normal)->floats);
     EXPECT_EQ(material.normal_scale, 0.25f);
     EXPECT_TRUE(material.normal_flip_y);
-    EXPECT_EQ(read.materials.at(1).normal_texture->floats, given.normal_texture->floats);
+    EXPECT_EQ(test::get_texture(read.materials.at(1), MaterialInput::normal)->floats,
+              test::get_texture(given, MaterialInput::normal)->floats);
     EXPECT_EQ(read.materials[1].normal_scale, 1);
     EXPECT_FALSE(read.materials[1].normal_flip_y);
     EXPECT_EQ(read.camera.from, scene.camera.from);

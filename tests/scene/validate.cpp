@@ -123,8 +123,6 @@ TEST(ValidateScene, refuses_maps_that_mean_nothing) {
                    s.displacements[0].dequantize = true, s.displacements[0].filter = MapFilter::cubic;
                }),
                "8 or 16-bit integers");
-    EXPECT_HAS(complaint([](Scene& s) { s.materials[0].base_color_filter = MapFilter::mip; }),
-               "neither none, cubic nor bspline");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].wrap = WrapMode(9); }), "is none of");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].type = DisplacementType(9); }), "is none of");
     EXPECT_HAS(complaint([](Scene& s) { s.displacements[0].space = DisplacementSpace(9); }), "is none of");
@@ -140,7 +138,7 @@ TEST(ValidateScene, refuses_normal_maps_without_uvs_or_with_too_few_channels) {
     const auto add_map = [](Scene& s, uint32_t channel_count) {
         auto texture = std::make_shared<Texture>(*s.displacements[0].tiles[0].texture);
         texture->channel_count = channel_count;
-        s.materials[0].normal_texture = texture;
+        set_input_texture(s.materials[0], MaterialInput::normal, texture);
         s.objects[0].material = 0;
     };
     EXPECT_EQ(complaint([&](Scene& s) { add_map(s, 3); }), "accepted");
@@ -153,9 +151,9 @@ TEST(ValidateScene, refuses_normal_maps_without_uvs_or_with_too_few_channels) {
                "mesh 'quad' has no uvs, which the normal_texture of its material needs");
     EXPECT_HAS(complaint([&](Scene& s) {
                    add_map(s, 3);
-                   s.materials[0].normal_filter = MapFilter::mip;
+                   s.materials[0].textures[0].filter = MapFilter::mip;
                }),
-               "neither none, cubic nor bspline");
+               "filters are none, cubic and bspline");
 }
 
 TEST(ValidateScene, uv_sets_of_textures_are_those_of_the_mesh) {

@@ -33,11 +33,9 @@ inline Scene make_narrow(Scene scene) {
     };
     for (Displacement& map : scene.displacements)
         for (MapTile& tile : map.tiles) replace(tile.texture);
-    for (Material& material : scene.materials) {
-        replace(material.base_color_texture);
+    for (Material& material : scene.materials)
         for (InputTexture& input : material.textures)
             for (MapTile& tile : input.tiles) replace(tile.texture);
-    }
     if (scene.environment) replace(scene.environment->texture);
     return scene;
 }
@@ -69,10 +67,10 @@ inline Scene make_textured_torus(uint32_t channel_count, SampleType type, MapFil
         return color;
     };
     Material material;
-    material.base_color_texture = make_color(3, 5);
-    material.textures = {{.input = MaterialInput::roughness, .tiles = {{1001, make_color(1, 6)}}},
+    material.textures = {{.input = MaterialInput::base_color, .tiles = {{1001, make_color(3, 5)}}},
+                         {.input = MaterialInput::roughness, .tiles = {{1001, make_color(1, 6)}}},
                          {.input = MaterialInput::coat_color, .tiles = {{1001, make_color(3, 7)}}}};
-    material.textures[1].filter = MapFilter::bspline;
+    material.textures[2].filter = MapFilter::bspline;
     material.coat_weight = 0.5f;
     scene.materials.push_back(material);
     scene.objects[0].material = 0;

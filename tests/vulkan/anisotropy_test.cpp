@@ -37,7 +37,7 @@ TEST_F(AnisotropicPictures, of_layers_agree) {
     expect_agreement(make_brushed());
     Material metal;
     metal.metallic = 1, metal.roughness = 0.4f, metal.specular_roughness_anisotropy = 0.9f;
-    metal.roughness_texture = make_grey_texture({0.5f, 1, 0.8f, 0.7f});
+    metal.textures = {make_input_texture(MaterialInput::roughness, {0.5f, 1, 0.8f, 0.7f})};
     expect_agreement(metal, true);
 }
 
@@ -46,7 +46,8 @@ TEST_F(AnisotropicPictures, of_textured_inputs_and_normal_maps_agree) {
     material.textures = {make_input_texture(MaterialInput::roughness, {0.4f, 1, 0.7f, 0.9f}),
                          make_input_texture(MaterialInput::coat_roughness, {1, 0.5f}),
                          make_input_texture(MaterialInput::coat_color, {0.3f, 1})};
-    material.normal_texture = make_colors(7, 5, 1, 9), material.normal_scale = 0.3f;
+    set_input_texture(material, MaterialInput::normal, make_colors(7, 5, 1, 9));
+    material.normal_scale = 0.3f;
     expect_agreement(material);
 }
 

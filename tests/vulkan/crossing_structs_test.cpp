@@ -31,7 +31,7 @@ static_assert(sizeof(scalar::InstanceData) * 1000000 <= 1 << 27, "one buffer hol
 static_assert(sizeof(scalar::SurfaceData) == 20 * 4);
 static_assert(sizeof(scalar::MapData) == 19 * 4);
 static_assert(sizeof(scalar::TextureData) == 5 * 4);
-static_assert(sizeof(scalar::MaterialData) == 63 * 4);
+static_assert(sizeof(scalar::MaterialData) == 59 * 4);
 static_assert(sizeof(scalar::MaterialInputData) == 64 * 4);
 static_assert(sizeof(scalar::InputTextureData) == 12 * 4);
 static_assert(sizeof(scalar::TileRecord) == 5 * 4);

@@ -140,8 +140,8 @@ void use_cut_outs(Scene& scene, RenderSettings&) {
     float opacity = 0.3f;
     for (Material& material : scene.materials)
         if (material.emission == Vec3f{}) material.opacity = opacity, opacity = 1.2f - opacity;
-    scene.materials.front().opacity_texture = make_half_greys(8, 5);
-    scene.materials.front().opacity_filter = MapFilter::cubic;
+    set_input_texture(scene.materials.front(), MaterialInput::opacity, make_half_greys(8, 5),
+                      MapFilter::cubic);
 }
 
 /// A rough body that absorbs, one of a part of glass, and a clear wall as floor; lights before and behind it.
@@ -149,7 +149,7 @@ void use_glass(Scene& scene, RenderSettings& settings) {
     settings.image.bounces = 8;
     Material& body = scene.materials.at(0);
     body.transmission_weight = 1, body.roughness = 0.3f, body.metallic = 0, body.ior = 1.4f;
-    body.metallic_texture = nullptr;
+    set_input_texture(body, MaterialInput::metallic, nullptr);
     body.transmission_color = {0.9f, 0.5f, 0.3f}, body.transmission_depth = 0.7f;
     Material& wall = scene.materials.at(2);
     wall.coat_weight = wall.fuzz_weight = 0;
@@ -157,7 +157,7 @@ void use_glass(Scene& scene, RenderSettings& settings) {
     wall.transmission_color = {0.5f, 1, 0.8f};
     Material mixed = body;
     mixed.transmission_weight = 0.6f, mixed.metallic = 0.3f, mixed.transmission_depth = 0;
-    mixed.normal_texture = nullptr; // the sphere has no uvs
+    set_input_texture(mixed, MaterialInput::normal, nullptr); // the sphere has no uvs
     mixed.is_thin_walled = true, mixed.base_diffuse_roughness = 0.5f, mixed.specular_weight = 0.8f;
     add_object(scene, make_sphere(4, SphereNormals::smooth), mixed);
     scene.objects.back().world_from_object =

@@ -80,18 +80,19 @@ inline void add_displaced(Scene& scene, Mesh mesh, DisplacementSpace space, cons
 inline Scene make_shading_scene() {
     Scene scene;
     Material colored = make_matte(0.9f), shiny, glowing;
-    colored.base_color_texture = make_colors(17, 9, 1.2f, 1);
-    shiny.roughness_texture = make_half_greys(8, 5);
-    colored.base_color_filter = MapFilter::cubic, shiny.roughness_filter = MapFilter::bspline;
+    const auto greys = make_half_greys(8, 5);
+    set_input_texture(colored, MaterialInput::base_color, make_colors(17, 9, 1.2f, 1), MapFilter::cubic);
+    set_input_texture(shiny, MaterialInput::roughness, greys, MapFilter::bspline);
     shiny.metallic = 0.4f, shiny.roughness = 0.6f;
-    shiny.metallic_texture = make_half_greys(5, 8), colored.metallic_texture = shiny.roughness_texture;
+    set_input_texture(shiny, MaterialInput::metallic, make_half_greys(5, 8));
+    set_input_texture(colored, MaterialInput::metallic, greys);
     colored.metallic = 0.5f;
     shiny.coat_weight = 0.7f, shiny.coat_color = {0.9f, 0.5f, 0.2f}, shiny.coat_roughness = 0.2f;
     shiny.fuzz_weight = 0.6f, shiny.base_diffuse_roughness = 0.5f, shiny.specular_color = {1, 0.8f, 0.6f};
     glowing.emission = {4, 3, 1};
-    colored.normal_texture = make_colors(23, 11, 1, 9), colored.normal_scale = 0.6f;
-    shiny.normal_texture = colored.normal_texture, shiny.normal_filter = MapFilter::cubic;
-    shiny.normal_flip_y = true;
+    const auto normals = make_colors(23, 11, 1, 9);
+    set_input_texture(colored, MaterialInput::normal, normals), colored.normal_scale = 0.6f;
+    set_input_texture(shiny, MaterialInput::normal, normals, MapFilter::cubic), shiny.normal_flip_y = true;
     add_displaced(scene, test::make_cube_sphere(3), DisplacementSpace::tangent, Affine{}, colored);
     scene.displacements.back().filter = MapFilter::mip, scene.displacements.back().autobump = true;
     Mesh torus = test::make_torus(6, 8);
@@ -99,7 +100,7 @@ inline Scene make_shading_scene() {
     torus.subdivision.level = 0;
     add_displaced(scene, torus, DisplacementSpace::object,
                   compose(make_translation({2.5f, 0.5f, 0}), make_scale({-0.5f, 0.6f, 0.7f})), glowing);
-    scene.materials.back().normal_texture = colored.normal_texture;
+    set_input_texture(scene.materials.back(), MaterialInput::normal, normals);
     Mesh floor = make_floor(6);
     floor.uvs = {{-1.7f, 3.2f}, {2.9f, 3.1f}, {3.0f, -2.5f}, {-1.6f, -2.4f}};
     add_object(scene, floor, shiny);
@@ -276,13 +277,14 @@ inline CpuVertex make_vertex(const cpu::Tracer& tracer, const ShadingCase& c) {
     cpu::map_shading_normals(scene, {&c.hit, 1}, {&v.point, 1});
     v.material = scene.materials[scene.instances[c.hit.instance].material];
     Material& m = v.material;
-    if (m.base_color_texture)
-        m.base_color =
-            m.base_color * cpu::fetch_texture(*m.base_color_texture, m.base_color_filter, v.point.uv);
-    if (m.roughness_texture)
-        m.roughness *= cpu::fetch_texture(*m.roughness_texture, m.roughness_filter, v.point.uv).x;
-    if (m.metallic_texture)
-        m.metallic *= cpu::fetch_texture(*m.metallic_texture, m.metallic_filter, v.point.uv).x;
+    const auto fetch = [&](MaterialInput input) {
+        const InputTexture* texture = find_input_texture(m, input);
+        return texture ? cpu::fetch_texture(*texture->tiles[0].texture, texture->filter, v.point.uv)
+                       : Vec3f{1, 1, 1};
+    };
+    m.base_color = m.base_color * fetch(MaterialInput::base_color);
+    m.roughness *= fetch(MaterialInput::roughness).x;
+    m.metallic *= fetch(MaterialInput::metallic).x;
     m.base_color = scalar::limit_color(m.base_color);
     m.metallic = std::clamp(m.metallic, 0.0f, 1.0f);
     const Vec3f wo = -c.ray.direction;

@@ -1,13 +1,23 @@
 // Textures of a material's inputs at one point.
 #pragma once
 
+#include <optional>
+#include <span>
+
 #include "cpu/shading/texture_place.h"
 
 namespace relief::cpu {
 
-/// The numbers at a place, each in its range. `numbers`: those before the textures.
-scalar::InputNumbers find_inputs(const TexturedMaterial& material, const scalar::InputNumbers& numbers,
-                                 const TexturePlace& place);
+/// Where a texture is read; on its tile, if it has several.
+Vec2f find_texture_uv(const PlacedTexture& texture, const TexturePlace& place);
+
+/// Its value there. Nothing where a tile lacks.
+std::optional<Vec3f> fetch_placed(const PlacedTexture& texture, const Vec2f& uv);
+
+/// The numbers at a place, each in its range, by the textures of `places` (scalar::kPointPlaces) alone.
+/// `numbers`: those before the textures.
+scalar::InputNumbers find_inputs(std::span<const PlacedTexture> textures, uint32_t places,
+                                 const scalar::InputNumbers& numbers, const TexturePlace& place);
 
 /// Radiance that a material of the scene emits.
 Vec3f find_emission(const PreparedScene& scene, uint32_t material, const TexturePlace& place);

@@ -3,30 +3,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "cpu/shading/input_look_up.h"
 #include "cpu/shading/kinds.h"
-#include "cpu/shading/textures.h"
 #include "formulas/path.h"
 
 namespace relief::cpu {
 
 namespace {
 
-/// With its textures of numbers, but not that of base_color.
-PointMaterial make_plain_material(const PreparedScene& scene, uint32_t index, const Vec2f& uv) {
+/// Without its textures.
+PointMaterial make_plain_material(const PreparedScene& scene, uint32_t index) {
     const Material& material = scene.materials[index];
     PointMaterial m{material.base_color,
                     material.emission,
                     material.roughness,
-                    find_metallic(material, uv),
+                    material.metallic,
                     material.ior,
                     scene.layers.empty() ? kNoIndex : scene.layers.record_of_material[index],
                     scene.glass.empty() ? kNoIndex : scene.glass.record_of_material[index],
                     kNoIndex};
     m.glass_numbers = m.glass;
-    if (material.roughness_texture)
-        m.roughness *= fetch_texture(*material.roughness_texture, material.roughness_filter, uv).x;
-    m.roughness = std::clamp(m.roughness, 0.0f, 1.0f);
     return m;
 }
 
@@ -59,27 +57,42 @@ class ColorLookUps {
     size_t count_ = 0;
 };
 
+bool is_repeated_bilinear(const PlacedTexture& texture) {
+    return texture.wrap == WrapMode::repeat && !texture.is_smooth && !texture.is_udim;
+}
+
+/// Applies a texture of what a point has of itself. One of a colour may join those that wait.
+void apply_texture(const PlacedTexture& texture, const TexturePlace& place, size_t point,
+                   ColorLookUps& colors, PointMaterial& m) {
+    const Vec2f uv = find_texture_uv(texture, place);
+    const bool is_color = texture.place.first == scalar::kInputBaseColor;
+    if (is_color && is_repeated_bilinear(texture) && std::isfinite(uv.x) && std::isfinite(uv.y))
+        return colors.add(point, *texture.tiles[0], uv);
+    const std::optional<Vec3f> value = fetch_placed(texture, uv);
+    if (!value) return;
+    if (is_color)
+        m.base_color = m.base_color * *value;
+    else if (texture.place.first == scalar::kInputRoughness)
+        m.roughness = std::clamp(m.roughness * value->x, 0.0f, 1.0f);
+    else
+        m.metallic = std::clamp(m.metallic * value->x, 0.0f, 1.0f);
+}
+
 void make_block(const PreparedScene& scene, const ShadingKernels& kernels, std::span<const TraceHit> hits,
                 std::span<const SurfacePoint> points, std::span<PointMaterial> materials,
                 BaseColor base_color) {
     ColorLookUps colors;
-    uint32_t last = kNoIndex; // material whose numbers are `numbers` at any point
+    uint32_t last = kNoIndex; // material that `numbers` are of
     PointMaterial numbers;
     for (size_t k = 0; k < hits.size(); ++k) {
         const uint32_t index = scene.instances[hits[k].instance].material;
-        const Material& material = scene.materials[index];
-        const Vec2f& uv = points[k].uv;
-        if (index != last) {
-            numbers = make_plain_material(scene, index, uv);
-            last = material.metallic_texture || material.roughness_texture ? kNoIndex : index;
-        }
+        if (index != last) numbers = make_plain_material(scene, index), last = index;
         materials[k] = numbers;
-        if (!material.base_color_texture || base_color == BaseColor::factor_alone) continue;
-        if (is_smooth(material.base_color_filter) || !std::isfinite(uv.x) || !std::isfinite(uv.y))
-            materials[k].base_color = materials[k].base_color * fetch_texture(*material.base_color_texture,
-                                                                              material.base_color_filter, uv);
-        else
-            colors.add(k, *material.base_color_texture, uv);
+        const TexturedMaterial* textured = scene.textured.find(index);
+        if (!textured) continue;
+        for (const PlacedTexture& texture : std::span(textured->textures).first(textured->point_count))
+            if (base_color == BaseColor::with_texture || texture.place.first != scalar::kInputBaseColor)
+                apply_texture(texture, place_hit(scene, hits[k], points[k].uv), k, colors, materials[k]);
     }
     colors.finish(kernels, [&](size_t k, const Vec3f& color) {
         materials[k].base_color = materials[k].base_color * color;
@@ -97,20 +110,6 @@ void make_point_materials(const PreparedScene& scene, const ShadingKernels& kern
         make_block(scene, kernels, hits.subspan(first, count), points.subspan(first, count),
                    materials.subspan(first, count), base_color);
     }
-}
-
-float find_opacity(const Material& material, const Vec2f& uv) {
-    const float factor = material.opacity_texture
-                             ? fetch_texture(*material.opacity_texture, material.opacity_filter, uv).x
-                             : 1.0f;
-    return std::clamp(material.opacity * factor, 0.0f, 1.0f);
-}
-
-float find_metallic(const Material& material, const Vec2f& uv) {
-    const float factor = material.metallic_texture
-                             ? fetch_texture(*material.metallic_texture, material.metallic_filter, uv).x
-                             : 1.0f;
-    return std::clamp(material.metallic * factor, 0.0f, 1.0f);
 }
 
 } // namespace relief::cpu

@@ -21,13 +21,9 @@ struct PointMaterial {
 
 enum class BaseColor { with_texture, factor_alone };
 
-/// Of the materials at many hits, whose points have the uvs; without Material::textures.
+/// Of the materials at many hits, whose points have the uvs; without what VertexInputs add.
 void make_point_materials(const PreparedScene& scene, const ShadingKernels& kernels,
                           std::span<const TraceHit> hits, std::span<const SurfacePoint> points,
                           std::span<PointMaterial> materials, BaseColor base_color);
-
-/// In [0, 1], with its texture, unless that is one of Material::textures.
-float find_opacity(const Material& material, const Vec2f& uv);
-float find_metallic(const Material& material, const Vec2f& uv);
 
 } // namespace relief::cpu

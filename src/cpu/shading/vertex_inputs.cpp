@@ -1,13 +1,15 @@
 #include "cpu/shading/vertex_inputs.h"
 
+#include <span>
+
 #include "cpu/shading/input_look_up.h"
 
 namespace relief::cpu {
 
 VertexInputs::VertexInputs(const PreparedScene& scene, size_t vertex_count)
     : scene_(scene),
-      has_layers_(!scene.textured.empty() && !scene.layers.empty()),
-      has_glass_(!scene.textured.empty() && !scene.glass.empty()) {
+      has_layers_(scene.textured.has_vertex_numbers && !scene.layers.empty()),
+      has_glass_(scene.textured.has_vertex_numbers && !scene.glass.empty()) {
     if (has_layers_) {
         layers_ = scene.layers.records, entries_ = scene.layers.entries;
         layers_.resize(layers_.size() + vertex_count);
@@ -28,14 +30,16 @@ LayerView VertexInputs::layers() const {
 
 void VertexInputs::set_textured(size_t n, const TraceHit& hit, const Vec2f& uv, PointMaterial& material) {
     const TexturedMaterial* textured = scene_.textured.find(scene_.instances[hit.instance].material);
-    if (!textured) return;
+    if (!textured || !textured->has_vertex_numbers) return;
     scalar::InputNumbers numbers = textured->numbers;
     numbers.word[scalar::kInputBaseColor] = material.base_color.x;
     numbers.word[scalar::kInputBaseColor + 1] = material.base_color.y;
     numbers.word[scalar::kInputBaseColor + 2] = material.base_color.z;
     numbers.word[scalar::kInputRoughness] = material.roughness;
     numbers.word[scalar::kInputMetallic] = material.metallic;
-    numbers = find_inputs(*textured, numbers, place_hit(scene_, hit, uv));
+    numbers =
+        find_inputs(std::span(textured->textures).subspan(textured->point_count),
+                    ~(scalar::kOpacityPlace | scalar::kNormalPlace), numbers, place_hit(scene_, hit, uv));
     material.base_color = scalar::get_input_color(numbers, scalar::kInputBaseColor);
     material.roughness = numbers.word[scalar::kInputRoughness];
     material.metallic = numbers.word[scalar::kInputMetallic];

@@ -1,5 +1,5 @@
 // The tables of layers and glass as kernels of shading read them: those of the scene, and behind them numbers
-// of the vertices at work whose materials' inputs have textures.
+// of the vertices at work, where textures change them.
 #pragma once
 
 #include <vector>
@@ -11,13 +11,13 @@ namespace relief::cpu {
 
 class VertexInputs {
   public:
-    /// For up to `vertex_count` vertices at once. Copies the scene's tables, if some inputs have textures.
+    /// For up to `vertex_count` vertices at once. Copies the scene's tables, if textures change them.
     VertexInputs(const PreparedScene& scene, size_t vertex_count);
 
     /// Changes the material of vertex `n` to what the textures make of it at a hit, whose uv in the mesh's
     /// own set is given, if it has some.
     void set(size_t n, const TraceHit& hit, const Vec2f& uv, PointMaterial& material) {
-        if (!scene_.textured.empty()) set_textured(n, hit, uv, material);
+        if (scene_.textured.has_vertex_numbers) set_textured(n, hit, uv, material);
     }
 
     LayerView layers() const;

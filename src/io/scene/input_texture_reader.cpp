@@ -53,7 +53,25 @@ void read_place(const JsonNode& node, InputTexture& texture) {
     texture.wrap = wrap->with_place([&] { return parse_word<WrapMode>(name); });
 }
 
-/// `node`: a file name, or an object with it. `is_own_key`: that of a member of Material.
+/// Which of a texel's values is the number.
+uint32_t read_channel(const JsonNode& node) {
+    constexpr std::string_view kNames[] = {"r", "g", "b", "a", "luminance"};
+    const std::string name = node.as_string();
+    const auto found = std::find(std::begin(kNames), std::end(kNames), name);
+    if (found == std::end(kNames))
+        node.fail(fmt::format("unknown channel '{}'", name), "one of r, g, b, a, luminance");
+    return uint32_t(found - std::begin(kNames));
+}
+
+/// `none` where there is none.
+MapFilter read_texture_filter(const JsonNode& node) {
+    const auto filter = node.find("filter");
+    if (!filter) return MapFilter::none;
+    const std::string name = filter->as_string();
+    return filter->with_place([&] { return parse_texture_filter(name); });
+}
+
+/// `node`: a file name, or an object with it. `is_own_key`: that of the texture alone.
 InputTexture read_input_texture(const JsonNode& node, const MaterialInputKind& kind, bool is_own_key,
                                 AssetCache& assets) {
     InputTexture texture;
@@ -77,7 +95,7 @@ InputTexture read_input_texture(const JsonNode& node, const MaterialInputKind& k
     return texture;
 }
 
-/// Where it is one: an object under the name of an input, or a file name with a token for tiles.
+/// Where there is one: an object under the name of an input, or what its texture's own key has.
 void read_one(const JsonNode& node, const MaterialInputKind& kind, AssetCache& assets, Material& material) {
     for (const char* key : {kind.name, kind.alias}) {
         const auto found = key ? node.find(key) : std::nullopt;
@@ -91,7 +109,7 @@ void read_one(const JsonNode& node, const MaterialInputKind& kind, AssetCache& a
     if (!kind.texture_key) return;
     for (const char* key : {kind.texture_key, kind.input == MaterialInput::normal ? kind.name : nullptr}) {
         const auto found = key ? node.find(key) : std::nullopt;
-        if (!found || !is_placed_texture(*found)) continue;
+        if (!found) continue;
         material.textures.push_back(read_input_texture(*found, kind, true, assets));
         return;
     }
@@ -101,15 +119,6 @@ void read_one(const JsonNode& node, const MaterialInputKind& kind, AssetCache& a
 
 void read_input_textures(const JsonNode& node, AssetCache& assets, Material& material) {
     for (const MaterialInputKind& kind : list_material_inputs()) read_one(node, kind, assets, material);
-}
-
-bool is_placed_texture(const JsonNode& texture) {
-    if (texture.is_string()) return has_tile_token(texture.as_string());
-    if (!texture.is_object()) return false;
-    const auto file = texture.find("file");
-    if (file && file->is_string() && has_tile_token(file->as_string())) return true;
-    return texture.find("wrap") || texture.find("uv_scale") || texture.find("uv_offset") ||
-           texture.find("uv_set");
 }
 
 std::string read_picture_file(const JsonNode& node, AssetCache& assets) {
@@ -123,28 +132,12 @@ std::string read_picture_file(const JsonNode& node, AssetCache& assets) {
     return assets.name_layer(file, names[0], names[1]);
 }
 
-uint32_t read_channel(const JsonNode& node) {
-    constexpr std::string_view kNames[] = {"r", "g", "b", "a", "luminance"};
-    const std::string name = node.as_string();
-    const auto found = std::find(std::begin(kNames), std::end(kNames), name);
-    if (found == std::end(kNames))
-        node.fail(fmt::format("unknown channel '{}'", name), "one of r, g, b, a, luminance");
-    return uint32_t(found - std::begin(kNames));
-}
-
 std::string read_color_space(const JsonNode& node) {
     const auto space = node.find("color_space");
     if (!space) return {};
     const std::string name = space->as_string();
     if (name.empty()) space->fail("a colour space needs a name", "auto, linear, srgb, acescg, ...");
     return name == "auto" ? std::string() : name;
-}
-
-MapFilter read_texture_filter(const JsonNode& node) {
-    const auto filter = node.find("filter");
-    if (!filter) return MapFilter::none;
-    const std::string name = filter->as_string();
-    return filter->with_place([&] { return parse_texture_filter(name); });
 }
 
 } // namespace relief

@@ -7,23 +7,14 @@
 
 namespace relief {
 
-/// Adds the textures that `node`, a material, has as objects under the names of its inputs, or whose file
-/// name has a token for tiles. Throws bad_input.
+/// Adds the textures that `node`, a material, has as objects under the names of its inputs, or under keys
+/// of their own. Throws bad_input.
 void read_input_textures(const JsonNode& node, AssetCache& assets, Material& material);
-
-/// Whether the texture of a key of today's, `*_texture`, is one that read_input_textures reads.
-bool is_placed_texture(const JsonNode& texture);
 
 /// The name of the picture that `node` has under "file", with the layer and part that it names.
 std::string read_picture_file(const JsonNode& node, AssetCache& assets);
 
-/// Which of a texel's values is the number.
-uint32_t read_channel(const JsonNode& node);
-
 /// `auto` and none are the same.
 std::string read_color_space(const JsonNode& node);
-
-/// `none` where there is none.
-MapFilter read_texture_filter(const JsonNode& node);
 
 } // namespace relief

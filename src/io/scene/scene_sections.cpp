@@ -48,42 +48,11 @@ void read_light_group(const JsonNode& node, std::string& group) {
 }
 
 std::shared_ptr<const Texture> read_texture_key(const JsonNode& node, std::string_view key, TextureUse use,
-                                                AssetCache& assets, uint32_t channel = 0,
-                                                const std::string& space = {}) {
+                                                AssetCache& assets, const std::string& space = {}) {
     const auto found = node.find(key);
     if (!found) return nullptr;
     const std::string file = key == "file" ? read_picture_file(node, assets) : found->as_string();
-    return found->with_place([&] { return assets.load(file, use, channel, space); });
-}
-
-struct FilteredTexture {
-    std::shared_ptr<const Texture> texture;
-    MapFilter filter = MapFilter::none;
-
-    void move_to(std::shared_ptr<const Texture>& target, MapFilter& target_filter) {
-        target = std::move(texture), target_filter = filter;
-    }
-};
-
-/// The name of a file, or an object with it.
-FilteredTexture read_filtered_texture(const JsonNode& node, std::string_view key, TextureUse use,
-                                      AssetCache& assets) {
-    const auto found = node.find(key);
-    if (!found || found->is_string()) return {read_texture_key(node, key, use, assets), MapFilter::none};
-    if (use == TextureUse::color)
-        found->check_keys(scene_keys::kColorTexture);
-    else if (use == TextureUse::vector)
-        found->check_keys(scene_keys::kNormalTexture);
-    else
-        found->check_keys(scene_keys::kDataTexture);
-    FilteredTexture result;
-    result.filter = read_texture_filter(*found);
-    found->get("file");
-    const auto channel = found->find("channel");
-    if (channel && read_channel(*channel) == kLuminanceChannel) use = TextureUse::number;
-    result.texture = read_texture_key(*found, "file", use, assets, channel ? read_channel(*channel) : 0,
-                                      use == TextureUse::color ? read_color_space(*found) : std::string());
-    return result;
+    return found->with_place([&] { return assets.load(file, use, 0, space); });
 }
 
 Affine read_matrix(const JsonNode& node) {
@@ -271,7 +240,7 @@ Environment read_environment(const JsonNode& node, AssetCache& assets) {
     node.check_keys(scene_keys::kEnvironment);
     Environment environment;
     environment.texture =
-        read_texture_key(node, "file", TextureUse::radiance, assets, 0, read_color_space(node));
+        read_texture_key(node, "file", TextureUse::radiance, assets, read_color_space(node));
     if (const auto space = node.find("color_space"); space && !environment.texture)
         space->fail("is that of a file, and there is none", "color is linear Rec.709");
     read_vec3(node, "color", environment.color, 0);
@@ -330,12 +299,9 @@ void read_emission(const JsonNode& node, Vec3f& emission) {
     emission = scale * read_factor(*luminance, 0, kUnboundedInput);
 }
 
-void read_normal_texture(const JsonNode& node, AssetCache& assets, Material& material) {
+/// Reads what the object of a normal map says beside its texture.
+void read_normal_options(const JsonNode& node, Material& material) {
     const auto found = find_value(node, "geometry_normal", "normal_texture");
-    const char* key = node.find("geometry_normal") ? "geometry_normal" : "normal_texture";
-    if (found && !is_placed_texture(*found))
-        read_filtered_texture(node, key, TextureUse::vector, assets)
-            .move_to(material.normal_texture, material.normal_filter);
     if (!found || found->is_string()) return;
     read_float(*found, "scale", material.normal_scale, 0, double(kMaxNormalScale));
     if (const auto flip = found->find("flip_y")) material.normal_flip_y = flip->as_bool();
@@ -355,13 +321,7 @@ Material read_material(const JsonNode& node, const std::string& name, AssetCache
         if (!kind.is_emission()) read_input(node, kind, material);
     read_emission(node, material.emission);
     read_light_group(node, material.light_group);
-    visit_own_textures(material, [&](const char* key, auto& texture, MapFilter& filter) {
-        if (&texture == &material.normal_texture) return read_normal_texture(node, assets, material);
-        if (const auto found = node.find(key); found && is_placed_texture(*found)) return;
-        const bool is_color = &texture == &material.base_color_texture;
-        read_filtered_texture(node, key, is_color ? TextureUse::color : TextureUse::data, assets)
-            .move_to(texture, filter);
-    });
+    read_normal_options(node, material);
     read_input_textures(node, assets, material);
     return material;
 }

@@ -82,6 +82,14 @@ void check_uv_sets(const Scene& scene, const Object& object) {
                  fmt::format("mesh '{}'", mesh.name), "write the scene file by hand"});
 }
 
+/// Whether the key that is a texture's own says all of it.
+bool has_own_key(const InputTexture& texture) {
+    InputTexture plain;
+    plain.input = texture.input, plain.tiles = texture.tiles, plain.filter = texture.filter;
+    plain.uv_set = texture.uv_set; // the mesh is written with it alone
+    return get_input_kind(texture.input).texture_key && texture == plain;
+}
+
 /// Maps are saved as floats, which have no steps to smooth.
 void check_steps(const Displacement& map) {
     if (map.dequantize)
@@ -190,14 +198,11 @@ class SceneWriter {
             Json& node = root_["materials"][material_names_.back()];
             write_inputs(material, node);
             if (!material.light_group.empty()) node["light_group"] = material.light_group;
-            visit_own_textures(material, [&](const char* name, const auto& texture, MapFilter filter) {
-                std::string_view input(name, std::string_view(name).rfind('_')); // without "_texture"
-                if (input == "base_color") input = "color"; // files have had this name from the first
-                if (texture)
-                    node[name] =
-                        add_texture(texture, filter, fmt::format("{}_{}", material_names_.back(), input));
-            });
-            for (const InputTexture& texture : material.textures) add_input(material, texture, node);
+            for (const InputTexture& texture : material.textures)
+                if (has_own_key(texture))
+                    add_own(texture, node);
+                else
+                    add_input(material, texture, node);
             write_emission(material, node);
             write_normal_options(material, node);
         }
@@ -218,6 +223,15 @@ class SceneWriter {
         for (const std::shared_ptr<const Texture>& map : maps)
             write_counted(*map, folder_ / fill_frame_number(pattern, frame++));
         return pattern;
+    }
+
+    /// A texture under the key that is its own.
+    void add_own(const InputTexture& texture, Json& node) {
+        const std::string_view key = get_input_kind(texture.input).texture_key;
+        std::string_view input = key.substr(0, key.rfind('_')); // without "_texture"
+        if (input == "base_color") input = "color";             // files have had this name from the first
+        node[key] = add_texture(texture.tiles.front().texture, texture.filter,
+                                fmt::format("{}_{}", material_names_.back(), input));
     }
 
     /// A texture in place of its number, which becomes its factor.

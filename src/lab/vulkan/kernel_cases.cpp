@@ -119,7 +119,9 @@ std::vector<NamedChange> list_material_changes() {
         {"input textures", "an input of a material has a texture",
          [](Scene& s, RenderSettings&) { add_input_texture(s.materials[0]); }},
         {"normal maps", "a material has a normal map",
-         [](Scene& s, RenderSettings&) { s.materials[0].normal_texture = make_texture(1); }},
+         [](Scene& s, RenderSettings&) {
+             set_input_texture(s.materials[0], MaterialInput::normal, make_texture(1));
+         }},
         {"anisotropy", "roughness with a direction",
          [](Scene& s, RenderSettings&) { s.materials[0].specular_roughness_anisotropy = 0.5f; }},
         {"cut-outs", "opacity below 1", [](Scene& s, RenderSettings&) { s.materials[0].opacity = 0.5f; }},

@@ -65,7 +65,7 @@ const std::map<uint32_t, std::string> kConstantNames = {
     {scalar::kGlassConstant, "glass"},
     {scalar::kTerminatorsConstant, "terminators"},
     {scalar::kShadowCatchersConstant, "shadow_catchers"},
-    {scalar::kInputTexturesConstant, "input_textures"},
+    {scalar::kVertexNumbersConstant, "vertex_numbers"},
     {scalar::kGuidesConstant, "guides"},
     {scalar::kAnisotropyConstant, "anisotropy"},
     {scalar::kBicubicConstant, "bicubic"},
@@ -73,7 +73,8 @@ const std::map<uint32_t, std::string> kConstantNames = {
     {scalar::kTilesConstant, "tiles"},
     {scalar::kRayLodConstant, "ray_lod"},
     {scalar::kCollectsConstant, "collects"},
-    {scalar::kUvSetsConstant, "uv_sets"}};
+    {scalar::kUvSetsConstant, "uv_sets"},
+    {scalar::kPlacedTexturesConstant, "placed_textures"}};
 
 /// Makes the objects that make kernels, case by case, and lists what was compiled.
 class KernelLister {

@@ -78,8 +78,7 @@ struct TextureData {
     uint is_half;       ///< stored in half_texels, else in float_texels
 };
 
-/// Indices into textures are kNone without one; kSplineTexture is set where the texels are coefficients of a
-/// uniform bicubic B-spline.
+/// Set in an index into textures where the texels are coefficients of a uniform bicubic B-spline.
 const uint kSplineTexture = 0x80000000u;
 struct MaterialData {
     Vec3 base_color;
@@ -87,25 +86,24 @@ struct MaterialData {
     Vec3 emission;
     float metallic;
     float ior;
-    uint color_texture, roughness_texture, metallic_texture, opacity_texture;
     float opacity;
-    uint normal_texture;
     Vec2 normal_scale; ///< of x and y; negative y: flipped
     uint light_group;  ///< of what it emits, as LightSourceData::group
     uint has_layers;
     LayerParameters layers;
     uint has_glass;
     GlassParameters glass;
-    uint inputs; ///< entry of MaterialInputData; kNone: no textures but those above
+    uint inputs;             ///< entry of MaterialInputData; kNone: no textures
+    uint has_vertex_numbers; ///< these change numbers that points do not have of themselves
 };
 
-/// Of a material whose inputs have textures of their own. Entries lie behind all materials, in the same
+/// Of a material with textures. Entries lie behind all materials, in the same
 /// buffer, as its words are counted: from the next whole one on. So do those of the textures behind them.
 struct MaterialInputData {
     InputNumbers numbers;
     InputConstants constants;
     LayerGrid grid;
-    uint has_normal; ///< one of the textures is a normal map
+    uint places; ///< of the numbers that the textures change, as kPointPlaces
     uint first_texture, texture_count;
 };
 

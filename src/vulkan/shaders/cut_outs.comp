@@ -10,30 +10,18 @@ layout(scalar, push_constant) uniform Push { CutOutPush push; };
 
 #include "vulkan/shaders/met_lights.glsl"
 
-/// Opacity and metallic of a material whose inputs have textures, from these numbers of its own.
-vec2 apply_wall_inputs(const HitData hit, const vec2 numbers_before, inout MaterialData material) {
-    MaterialInputData inputs = material_inputs[material.inputs];
-    inputs.numbers.word[kInputOpacity] = numbers_before.x;
-    inputs.numbers.word[kInputMetallic] = numbers_before.y;
-    InputNumbers numbers = find_inputs_at(inputs, instances[hit.instance], hit.patch_index, vec2(hit.u, hit.v));
-    material.glass = set_glass_inputs(material.glass, numbers, inputs.constants);
-    return vec2(numbers.word[kInputOpacity], numbers.word[kInputMetallic]);
-}
-
 /// Opacity, and metallic where clear walls ask for it; of these their textures change the glass as well.
-vec2 find_wall_numbers(const HitData hit, inout MaterialData material) {
-    InstanceData instance = instances[hit.instance];
-    uint indices[2] = {material.opacity_texture, kHasGlass != 0u ? material.metallic_texture : kNone};
-    vec2 factors = vec2(1.0);
-    if (indices[0] != kNone || indices[1] != kNone) {
-        SurfaceData s = surfaces[instance.surface];
-        vec2 uv = interpolate_uv(s, load_quad(s, hit.patch_index), vec2(hit.u, hit.v));
-        // A loop, so that the look-up is inlined only once.
-        for (int k = 0; k < 2; ++k)
-            if (indices[k] != kNone) factors[k] = fetch_texture(indices[k], uv).x;
-    }
-    vec2 found = clamp(vec2(material.opacity, material.metallic) * factors, 0.0, 1.0);
-    return has_input_textures(material) ? apply_wall_inputs(hit, found, material) : found;
+vec2 find_wall_numbers(const HitData hit, const bool is_wall, inout MaterialData material) {
+    vec2 found = vec2(material.opacity, material.metallic);
+    if (material.inputs == kNone) return found;
+    MaterialInputData inputs = material_inputs[material.inputs];
+    uint places = is_wall ? kWallPlaces : kOpacityPlace;
+    if ((inputs.places & places) == 0u) return found;
+    InputNumbers numbers =
+        find_inputs_at(inputs, places, instances[hit.instance], hit.patch_index, vec2(hit.u, hit.v));
+    if (kHasVertexNumbers != 0u && is_wall && material.has_vertex_numbers != 0u)
+        material.glass = set_glass_inputs(material.glass, numbers, inputs.constants);
+    return vec2(numbers.word[kInputOpacity], numbers.word[kInputMetallic]);
 }
 
 /// Cosine of a ray to the geometric normal.
@@ -59,7 +47,7 @@ bool passes(const uint path_index, const uint ray_index, const HitData hit) {
     if (!is_hit(hit)) return false;
     MaterialData material = materials[instances[hit.instance].material];
     bool is_wall = kHasGlass != 0u && material.has_glass != 0u && material.glass.kind == kClearWall;
-    vec2 found = find_wall_numbers(hit, material);
+    vec2 found = find_wall_numbers(hit, is_wall, material);
     float u = draw_cut_out(paths[path_index].pixel_seed, push.sample_index, push.depth, push.is_shadow, push.round);
     if (!is_wall) return u >= found.x;
     vec3 left = pass_clear_wall(material.glass, found.y, found.x, find_cosine(ray_index, hit));

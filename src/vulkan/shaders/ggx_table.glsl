@@ -8,7 +8,7 @@
 #include "formulas/layer_grid.h"
 #include "vulkan/layout/bindings.h"
 
-layout(constant_id = kInputTexturesConstant) const uint kHasInputTextures = 0;
+layout(constant_id = kVertexNumbersConstant) const uint kHasVertexNumbers = 0;
 
 layout(binding = kBindAlbedos) uniform samplerBuffer ggx_albedo_table;
 
@@ -24,7 +24,7 @@ Vec2 read_grid_entry(const GridTable table, const uint i) { return texelFetch(gg
 /// The same, or the block of one point of a material whose inputs have textures.
 struct LayerTable {
     GridTable entries;
-    bool is_block; ///< false wherever kHasInputTextures is 0
+    bool is_block; ///< false wherever kHasVertexNumbers is 0
     LayerPlace place;
 };
 
@@ -36,7 +36,7 @@ LayerTable make_layer_table(const GridTable entries) {
 }
 
 Vec2 read_layer_entry(const LayerTable table, const uint i) {
-    if (kHasInputTextures != 0u && table.is_block) return blend_layer_block(table.entries, table.place, i);
+    if (kHasVertexNumbers != 0u && table.is_block) return blend_layer_block(table.entries, table.place, i);
     return read_grid_entry(table.entries, i);
 }
 

@@ -39,9 +39,9 @@ DrawnLight draw_from_emitter(const vec3 position, const uint lod_bias, const uin
     float pdf =
         emitter_density(load_probability(emitter), point.triangle.area_per_uv, point.triangle.normal, to);
     MaterialData material = materials[instance.material];
-    if (has_input_textures(material)) {
+    if (kHasVertexNumbers != 0u && material.has_vertex_numbers != 0u) {
         vec2 at = is_polygon ? square_to_triangle(u) : u;
-        InputNumbers numbers = find_inputs_at(material_inputs[material.inputs], instance, patch_index, at);
+        InputNumbers numbers = find_inputs_at(material_inputs[material.inputs], kEmissionPlace, instance, patch_index, at);
         material.emission = get_input_color(numbers, kInputEmission);
     }
     DrawnLight result = {draw_emitter(material.emission, to, pdf), true, vec3(0.0), kNone};

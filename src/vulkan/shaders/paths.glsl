@@ -62,7 +62,7 @@ uint find_point_numbers(const uint capacity, const uint path_index) {
 
 /// First word of the tangent at a path's point, if its material is anisotropic; behind all of these.
 uint find_point_tangent(const uint capacity, const uint path_index) {
-    uint first = kHasInputTextures != 0u ? find_point_numbers(capacity, capacity) * kInputWords
+    uint first = kHasVertexNumbers != 0u ? find_point_numbers(capacity, capacity) * kInputWords
                                          : capacity * kSurfacePointWords;
     return first + 3u * path_index;
 }
@@ -105,7 +105,7 @@ VertexMaterial load_vertex_material(const uint index, const uint capacity, const
     material.tangent = vec3(0.0);
     if (kHasAnisotropy != 0u && is_anisotropic(material.numbers))
         material.tangent = load_point_tangent(capacity, path_index);
-    if (kHasInputTextures == 0u || material.numbers.inputs == kNone) return material;
+    if (kHasVertexNumbers == 0u || material.numbers.has_vertex_numbers == 0u) return material;
     MaterialInputData inputs = vertex_inputs[material.numbers.inputs];
     InputNumbers textured = point_numbers[find_point_numbers(capacity, path_index)];
     material.numbers.emission = get_input_color(textured, kInputEmission);

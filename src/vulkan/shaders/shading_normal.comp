@@ -20,44 +20,27 @@ struct Appearance {
     bool has_normal_texel;
     vec3 tangent; ///< of anisotropic materials
     bool has_tangent;
-    bool has_numbers; ///< false wherever kHasInputTextures is 0
+    bool has_numbers; ///< of the vertex
     InputNumbers numbers;
 };
 
-/// What textures of other inputs, and those with a place of their own, add.
-void apply_inputs(const MaterialInputData inputs, const TexturePlace place, inout Appearance appearance) {
-    InputNumbers numbers = inputs.numbers;
-    numbers.word[kInputBaseColor] = appearance.base_color.x;
-    numbers.word[kInputBaseColor + 1u] = appearance.base_color.y;
-    numbers.word[kInputBaseColor + 2u] = appearance.base_color.z;
-    numbers.word[kInputRoughness] = appearance.roughness;
-    numbers.word[kInputMetallic] = appearance.metallic;
-    numbers = find_inputs(inputs, numbers, place);
+void apply_textures(const MaterialInputData inputs, const TexturePlace place, inout Appearance appearance) {
+    InputNumbers numbers = find_inputs(inputs, ~kOpacityPlace, place);
     appearance.base_color = get_input_color(numbers, kInputBaseColor);
     appearance.roughness = numbers.word[kInputRoughness];
     appearance.metallic = numbers.word[kInputMetallic];
-    if (inputs.has_normal != 0u) {
-        appearance.normal_texel = get_input_color(numbers, kInputNormal);
-        appearance.has_normal_texel = true;
-    }
-    appearance.has_numbers = true;
+    appearance.normal_texel = get_input_color(numbers, kInputNormal);
+    appearance.has_normal_texel = has_place(inputs.places, kInputNormal);
     appearance.numbers = numbers;
 }
 
 void apply_material(const MaterialData material, const TexturePlace place, inout Appearance appearance) {
-    uint indices[4] = {material.color_texture, material.roughness_texture, material.metallic_texture,
-                       material.normal_texture};
-    vec3 values[4] = {vec3(1.0), vec3(1.0), vec3(1.0), vec3(1.0)};
-    // A loop, so that the look-up is inlined only once.
-    for (uint k = 0u; k < (kHasNormalMaps != 0u ? 4u : 3u); ++k)
-        if (indices[k] != kNone) values[k] = fetch_texture(indices[k], appearance.uv);
-    appearance.base_color = limit_color(material.base_color * values[0]);
-    appearance.roughness = clamp(material.roughness * values[1].x, 0.0, 1.0);
-    appearance.metallic = clamp(material.metallic * values[2].x, 0.0, 1.0);
-    appearance.normal_texel = values[3];
-    appearance.has_normal_texel = material.normal_texture != kNone;
-    appearance.has_numbers = false;
-    if (has_input_textures(material)) apply_inputs(material_inputs[material.inputs], place, appearance);
+    appearance.base_color = material.base_color;
+    appearance.roughness = material.roughness;
+    appearance.metallic = material.metallic;
+    appearance.has_normal_texel = false;
+    appearance.has_numbers = material.has_vertex_numbers != 0u;
+    if (material.inputs != kNone) apply_textures(material_inputs[material.inputs], place, appearance);
 }
 
 /// As cpu/shading/normal_maps.cpp; `normal` on the side of the winding.
@@ -122,7 +105,7 @@ void main() {
     points[path_index].base_color = appearance.base_color;
     points[path_index].roughness = appearance.roughness;
     points[path_index].metallic = appearance.metallic;
-    if (kHasInputTextures != 0u && appearance.has_numbers)
+    if (kHasVertexNumbers != 0u && appearance.has_numbers)
         point_numbers[find_point_numbers(push.capacity, path_index)] = appearance.numbers;
     if (appearance.has_tangent) {
         uint first = find_point_tangent(push.capacity, path_index);

@@ -72,9 +72,8 @@ struct AllStructs {
     FIELD(s.weight) FIELD(s.ior) FIELD3(s.specular_color) FIELD3(s.tint) FIELD3(s.depth) FIELD(s.anisotropy) FIELD(s.kind)
 #define FIELDS_MATERIAL(s) \
     FIELD3(s.base_color) FIELD(s.roughness) FIELD3(s.emission) FIELD(s.metallic) FIELD(s.ior) \
-    FIELD(s.color_texture) FIELD(s.roughness_texture) FIELD(s.metallic_texture) FIELD(s.opacity_texture) FIELD(s.opacity) \
-    FIELD(s.normal_texture) FIELD2(s.normal_scale) FIELD(s.light_group) FIELD(s.has_layers) FIELDS_LAYERS(s.layers) \
-    FIELD(s.has_glass) FIELDS_GLASS(s.glass) FIELD(s.inputs)
+    FIELD(s.opacity) FIELD2(s.normal_scale) FIELD(s.light_group) FIELD(s.has_layers) FIELDS_LAYERS(s.layers) \
+    FIELD(s.has_glass) FIELDS_GLASS(s.glass) FIELD(s.inputs) FIELD(s.has_vertex_numbers)
 #define FIELD4(s) FIELD(s[0]) FIELD(s[1]) FIELD(s[2]) FIELD(s[3])
 #define FIELDS_WORDS(s, k) FIELD(s.word[k]) FIELD(s.word[k + 1]) FIELD(s.word[k + 2]) FIELD(s.word[k + 3])
 #define FIELDS_NUMBERS(s) \
@@ -85,7 +84,7 @@ struct AllStructs {
     FIELD(s.row_count) FIELD(s.azimuth_count) FIELD(s.fuzz_lower) FIELD(s.fuzz_scale) FIELD(s.fuzz_last)
 #define FIELDS_MATERIAL_INPUT(s) \
     FIELDS_NUMBERS(s.numbers) FIELD(s.constants.ior) FIELD(s.constants.coat_ior) FIELD(s.constants.is_absorbing) \
-    FIELDS_GRID(s.grid) FIELD(s.has_normal) FIELD(s.first_texture) FIELD(s.texture_count)
+    FIELDS_GRID(s.grid) FIELD(s.places) FIELD(s.first_texture) FIELD(s.texture_count)
 #define FIELDS_INPUT_TEXTURE(s) \
     FIELD(s.place) FIELD(s.count) FIELD(s.is_number) FIELD(s.is_udim) FIELD(s.wrap) FIELD2(s.uv_scale) \
     FIELD2(s.uv_offset) FIELD(s.first_tile) FIELD(s.tile_count) FIELD(s.uv_set)
