@@ -24,7 +24,9 @@ bool fetch_placed(const InputTextureData source, vec2 at, out vec3 value) {
     }
     uint index = input_tiles[source.first_tile + tile];
     if (kHasPlacedTextures != 0u && index == kNone) return false;
-    value = kHasPlacedTextures != 0u ? fetch_wrapped(index, at, source.wrap) : fetch_texture(index, at);
+    // Loops over the texels of a spline leave registers for the numbers of a vertex.
+    bool has_loops = kHasPlacedTextures != 0u || (kHasVertexNumbers != 0u && kHasSmooth != 0u);
+    value = has_loops ? fetch_wrapped(index, at, source.wrap) : fetch_texture(index, at);
     return true;
 }
 

@@ -20,27 +20,29 @@ struct Appearance {
     bool has_normal_texel;
     vec3 tangent; ///< of anisotropic materials
     bool has_tangent;
-    bool has_numbers; ///< of the vertex
-    InputNumbers numbers;
 };
 
-void apply_textures(const MaterialInputData inputs, const TexturePlace place, inout Appearance appearance) {
+/// Numbers of the vertex are stored at once, so that they take no registers from here on.
+void apply_textures(const MaterialData material, const TexturePlace place, const uint path_index,
+                    inout Appearance appearance) {
+    MaterialInputData inputs = material_inputs[material.inputs];
     InputNumbers numbers = find_inputs(inputs, ~kOpacityPlace, place);
+    if (kHasVertexNumbers != 0u && material.has_vertex_numbers != 0u)
+        point_numbers[find_point_numbers(push.capacity, path_index)] = numbers;
     appearance.base_color = get_input_color(numbers, kInputBaseColor);
     appearance.roughness = numbers.word[kInputRoughness];
     appearance.metallic = numbers.word[kInputMetallic];
     appearance.normal_texel = get_input_color(numbers, kInputNormal);
     appearance.has_normal_texel = has_place(inputs.places, kInputNormal);
-    appearance.numbers = numbers;
 }
 
-void apply_material(const MaterialData material, const TexturePlace place, inout Appearance appearance) {
+void apply_material(const MaterialData material, const TexturePlace place, const uint path_index,
+                    inout Appearance appearance) {
     appearance.base_color = material.base_color;
     appearance.roughness = material.roughness;
     appearance.metallic = material.metallic;
     appearance.has_normal_texel = false;
-    appearance.has_numbers = material.has_vertex_numbers != 0u;
-    if (material.inputs != kNone) apply_textures(material_inputs[material.inputs], place, appearance);
+    if (material.inputs != kNone) apply_textures(material, place, path_index, appearance);
 }
 
 /// As cpu/shading/normal_maps.cpp; `normal` on the side of the winding.
@@ -67,7 +69,8 @@ vec3 apply_normal_map(const MaterialData material, const InstanceData instance, 
                       decode_normal(texel, material.normal_scale));
 }
 
-Appearance find_appearance(const HitData hit, const vec3 geometric_normal, const bool is_flipped) {
+Appearance find_appearance(const uint path_index, const HitData hit, const vec3 geometric_normal,
+                           const bool is_flipped) {
     InstanceData instance = instances[hit.instance];
     SurfaceData s = surfaces[instance.surface];
     uvec4 quad = load_quad(s, hit.patch_index);
@@ -78,7 +81,8 @@ Appearance find_appearance(const HitData hit, const vec3 geometric_normal, const
     Appearance appearance;
     appearance.uv = interpolate_uv(s, quad, at);
     MaterialData material = load_material_numbers(instance.material);
-    apply_material(material, TexturePlace(instance.surface, hit.patch_index, at, appearance.uv), appearance);
+    TexturePlace place = TexturePlace(instance.surface, hit.patch_index, at, appearance.uv);
+    apply_material(material, place, path_index, appearance);
     bool is_mapped = kHasNormalMaps != 0u && appearance.has_normal_texel;
     appearance.has_tangent = kHasAnisotropy != 0u && is_anisotropic(material);
     if (is_mapped || appearance.has_tangent)
@@ -97,7 +101,8 @@ void main() {
     if (!is_hit(hit)) return;
     vec3 geometric_normal = points[path_index].geometric_normal;
     bool is_flipped = points[path_index].is_flipped != 0u;
-    Appearance appearance = find_appearance(hit, is_flipped ? -geometric_normal : geometric_normal, is_flipped);
+    Appearance appearance =
+        find_appearance(path_index, hit, is_flipped ? -geometric_normal : geometric_normal, is_flipped);
     bool is_caught = is_catcher(hit, push.depth);
     if (is_caught) appearance.base_color = vec3(1.0), appearance.roughness = 1.0, appearance.metallic = 0.0;
     points[path_index].bent_normal =
@@ -105,8 +110,6 @@ void main() {
     points[path_index].base_color = appearance.base_color;
     points[path_index].roughness = appearance.roughness;
     points[path_index].metallic = appearance.metallic;
-    if (kHasVertexNumbers != 0u && appearance.has_numbers)
-        point_numbers[find_point_numbers(push.capacity, path_index)] = appearance.numbers;
     if (appearance.has_tangent) {
         uint first = find_point_tangent(push.capacity, path_index);
         for (uint k = 0u; k < 3u; ++k) point_tangents[first + k] = appearance.tangent[k];
