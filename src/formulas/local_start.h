@@ -26,20 +26,12 @@ FN Vec3 find_lost_by_subtraction(const Vec3 a, const Vec3 b, const Vec3 differen
 }
 
 /// origin + speed t with a single rounding, so that distant rays are not shifted: the rounding error of the
-/// product is added afterwards (Dekker 1971). Not by fma(), which a device may round twice.
+/// product is added afterwards.
 FN float move_origin(const float origin, const float speed, const float t) {
     EXACT float product = speed * t;
     EXACT float sum = origin + product;
     if (!(abs(t) < 1e34f)) return sum;
-    EXACT float speed_shifted = speed * 4097.0f;
-    EXACT float speed_high = speed_shifted - (speed_shifted - speed);
-    EXACT float speed_low = speed - speed_high;
-    EXACT float t_shifted = t * 4097.0f;
-    EXACT float t_high = t_shifted - (t_shifted - t);
-    EXACT float t_low = t - t_high;
-    EXACT float lost =
-        ((speed_high * t_high - product) + speed_high * t_low + speed_low * t_high) + speed_low * t_low;
-    EXACT float result = sum + lost;
+    EXACT float result = sum + find_product_error(speed, t, product);
     return result;
 }
 

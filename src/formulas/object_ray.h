@@ -103,16 +103,16 @@ struct TriangleHit {
     float weight_b, weight_c;
 };
 
-/// Edge functions opposite the corners a, b and c, and the place of the hit along the major axis.
+/// Edge functions opposite the corners a, b and c, their sum, and the sum of z weighted by them.
 struct TriangleEdges {
-    float u, v, w, sum, place;
+    float u, v, w, sum, weighted_z;
 };
 
-FN TriangleEdges place_hit(const Vec3 a, const Vec3 b, const Vec3 c, const float u, const float v,
-                           const float w) {
+FN TriangleEdges weigh_edges(const Vec3 a, const Vec3 b, const Vec3 c, const float u, const float v,
+                             const float w) {
     EXACT float sum = u + v + w;
-    EXACT float place = (u * a.z + v * b.z + w * c.z) / sum;
-    TriangleEdges edges = {u, v, w, sum, place};
+    EXACT float weighted_z = u * a.z + v * b.z + w * c.z;
+    TriangleEdges edges = {u, v, w, sum, weighted_z};
     return edges;
 }
 
@@ -120,32 +120,37 @@ FN bool is_on_one_side(const float u, const float v, const float w) {
     return min(min(u, v), w) >= 0.0f || max(max(u, v), w) <= 0.0f;
 }
 
-/// Whether rounding may have put the place on the wrong side of the ray's origin. The place is a mean of z:
-/// where no corner or all corners are behind the origin, its sign is right.
-FN bool is_place_doubtful(const Vec3 a, const Vec3 b, const Vec3 c, const TriangleEdges edges) {
-    if (is_on_one_side(a.z, b.z, c.z)) return false;
-    EXACT float distance = abs(edges.place) * abs(edges.sum);
-    EXACT float products = find_largest(a.x, b.x, c.x) * find_largest(a.y, b.y, c.y);
-    EXACT float rounding = products * find_largest(a.z, b.z, c.z) * kEdgeRounding;
-    return distance <= rounding;
+/// Whether the ray's line goes through the triangle, which has an area as the ray sees it.
+FN bool is_triangle_met(const TriangleEdges edges) {
+    return is_on_one_side(edges.u, edges.v, edges.w) && edges.sum != 0.0f;
 }
 
-/// `a`, `b`, `c`: sheared corners. The sign of an edge function is never wrong, at most zero, and zero counts
-/// as inside. Fused operations would break this.
+/// Whether rounding may have put the hit on the wrong side of the ray's origin (formulas/exact_edge.h). Its
+/// place is a mean of z: where no corner or all corners are behind the origin, its sign is right.
+FN bool is_place_doubtful(const Vec3 a, const Vec3 b, const Vec3 c, const TriangleEdges edges) {
+    if (is_on_one_side(a.z, b.z, c.z)) return false;
+    EXACT float products = find_largest(a.x, b.x, c.x) * find_largest(a.y, b.y, c.y);
+    EXACT float rounding = products * find_largest(a.z, b.z, c.z) * kEdgeRounding;
+    return abs(edges.weighted_z) <= rounding;
+}
+
+/// `a`, `b`, `c`: sheared corners. The sign of an edge function is never wrong, but the function may be zero.
+/// Zero counts as inside; in a hit that is in doubt, the edge functions decide that are nearly exact. A ray
+/// through a shared edge hits one of its triangles in either case. Fused operations would break this.
 FN TriangleHit intersect_sheared(const ObjectRay ray, const Vec3 a, const Vec3 b, const Vec3 c,
                                  const float t_min, const float t_max) {
     EXACT float u = c.x * b.y - c.y * b.x;
     EXACT float v = a.x * c.y - a.y * c.x;
     EXACT float w = b.x * a.y - b.y * a.x;
     TriangleHit result = {uintBitsToFloat(0x7f800000u), 0.0f, 0.0f};
-    if (!is_on_one_side(u, v, w)) return result;
-    TriangleEdges edges = place_hit(a, b, c, u, v, w);
-    if (edges.sum == 0.0f) return result;
+    TriangleEdges edges = weigh_edges(a, b, c, u, v, w);
+    if (!is_triangle_met(edges)) return result;
     if (is_place_doubtful(a, b, c, edges)) {
-        edges = place_hit(a, b, c, find_exact_edge(c.x, c.y, b.x, b.y, u),
-                          find_exact_edge(a.x, a.y, c.x, c.y, v), find_exact_edge(b.x, b.y, a.x, a.y, w));
+        edges = weigh_edges(a, b, c, find_exact_edge(c.x, c.y, b.x, b.y), find_exact_edge(a.x, a.y, c.x, c.y),
+                            find_exact_edge(b.x, b.y, a.x, a.y));
+        if (!is_triangle_met(edges)) return result;
     }
-    EXACT float t = edges.place * ray.shear_z + ray.shift;
+    EXACT float t = edges.weighted_z / edges.sum * ray.shear_z + ray.shift;
     if (!(t > t_min && t <= t_max)) return result;
     result.t = t;
     result.weight_b = edges.v / edges.sum;

@@ -143,9 +143,10 @@ DeviceLights::DeviceLights(const Device& device, const PreparedScene& scene, con
     description_.source_count = tables.listed_count;
     has_links_ = !tables.link_words.empty(), has_textures_ = !tables.textures.empty();
     sources_ = make_table(device, "light_sources", TexelFormat::none,
-                          join_sources(tables, description_.first_light_node));
-    emitters_ = make_table(device, "emitters", TexelFormat::rg32_uint,
-                           make_emitters(emitters, tables, description_.first_light_node));
+                          join_sources(tables, description_.first_light_node), Purpose::structures);
+    emitters_ =
+        make_table(device, "emitters", TexelFormat::rg32_uint,
+                   make_emitters(emitters, tables, description_.first_light_node), Purpose::structures);
     if (!scene.layers.empty())
         albedos_ = make_table(device, "albedos", TexelFormat::rg32_float, join_albedos(scene.layers));
 }

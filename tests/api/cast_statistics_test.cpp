@@ -56,7 +56,7 @@ TEST(CastStatistics, are_ordered_by_depth_and_add_up_to_the_whole) {
     EXPECT_DOUBLE_EQ(sum.bottom_traversal_s, s.bottom_traversal_s);
 }
 
-TEST(MemoryStatistics, include_lights_and_the_environment) {
+TEST(MemoryStatistics, include_tables_of_lights_and_the_distribution_of_the_environment) {
     RenderSettings settings;
     settings.image.width = settings.image.height = 8;
     settings.image.spp = 1, settings.image.bounces = 0;

@@ -31,19 +31,25 @@ class GrazedSliver {
         return scene;
     }
 
-    /// Groups of sixteen nearly parallel rays towards points well within the rectangle and off its diagonal.
-    std::vector<cpu::TraceRay> make_rays(size_t group_count) const {
+    static constexpr float kAhead = 0.05f;
+    /// Of t: vertices are rounded as the ray sees them, which moves the hit by a thousand times as much.
+    static constexpr float kTolerance = 0.01f;
+
+    /// Groups of sixteen nearly parallel rays towards points well within the rectangle, half of them on its
+    /// diagonal. The points lie `ahead` from the origins, which may be negative.
+    std::vector<cpu::TraceRay> make_rays(size_t group_count, float ahead) const {
         const Vec3f x = normalize(along_), y = normalize(across_), normal = cross(x, y);
         std::mt19937 random(3);
         std::uniform_real_distribution<float> angle(0.5f, 1.2f), place(0.2f, 0.4f), jitter(-1e-5f, 1e-5f);
         std::vector<cpu::TraceRay> rays;
         for (size_t group = 0; group < group_count; ++group) {
-            const float of_group = angle(random), u = place(random), v = u + place(random);
+            const float of_group = angle(random), u = place(random);
+            const float v = u + (group % 2 == 0 ? place(random) : 0.0f);
             for (int k = 0; k < 16; ++k) {
                 const float a = of_group + jitter(random);
                 cpu::TraceRay ray;
                 ray.direction = normalize(x * std::cos(a) + y * std::sin(a) + normal * kSlope);
-                ray.origin = at(u + jitter(random), v) - ray.direction * kAhead;
+                ray.origin = at(u + jitter(random), v) - ray.direction * ahead;
                 rays.push_back(ray);
             }
         }
@@ -52,7 +58,6 @@ class GrazedSliver {
 
   private:
     static constexpr float kSlope = 8e-4f; ///< of rays to the triangles
-    static constexpr float kAhead = 0.05f; ///< how far ahead of their origin the rays meet the surface
 
     Vec3f at(float u, float v) const { return along_ * (u - 0.5f) + across_ * (v - 0.5f); }
 

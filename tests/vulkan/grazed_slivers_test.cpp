@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "cast_fixture.h"
@@ -12,14 +13,19 @@ namespace {
 
 class DeviceGrazedSlivers : public GpuTest, public testing::WithParamInterface<bool> {};
 
-TEST_P(DeviceGrazedSlivers, are_hit_by_rays_that_start_near_them) {
+TEST_P(DeviceGrazedSlivers, are_hit_by_rays_that_start_before_them_only) {
     RenderSettings settings;
     settings.surface.level = 0;
     const test::GrazedSliver sliver;
     const auto scene = prepare_scene(sliver.make_scene(GetParam()), settings);
-    const std::vector<cpu::TraceRay> rays = sliver.make_rays(60);
+    std::vector<cpu::TraceRay> rays = sliver.make_rays(60, sliver.kAhead);
+    const auto ahead_count = std::ptrdiff_t(rays.size());
+    for (const cpu::TraceRay& ray : sliver.make_rays(60, -sliver.kAhead)) rays.push_back(ray);
     const CastAnswers answers = cast_on_device(device(), *scene, settings, rays, {});
-    EXPECT_EQ(std::ranges::count(answers.closest, scalar::kNone, &scalar::HitData::instance), 0);
+    const auto is_missed = [](const scalar::HitData& hit) { return hit.instance == scalar::kNone; };
+    const auto behind = answers.closest.begin() + ahead_count;
+    EXPECT_TRUE(std::none_of(answers.closest.begin(), behind, is_missed));
+    EXPECT_TRUE(std::all_of(behind, answers.closest.end(), is_missed));
     expect_same(answers, cast_on_cpu(scene, settings, rays), rays);
 }
 

@@ -31,7 +31,9 @@ class LightChooser {
     }
     bool has_light_tree() const { return !tables_.nodes.empty(); }
 
+#define In(Type) const Type&
 #include "path/light_choice.h"
+#undef In
 
   private:
     const LightSourceData& load_light_source(uint k) const { return tables_.sources[k]; }

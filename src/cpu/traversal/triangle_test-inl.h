@@ -2,7 +2,7 @@
 //
 // Watertight after Woop, Benthin, Wald 2013: vertices are sheared into ray space once each, and an edge
 // function is the same rounded products subtracted in either order: its sign is never wrong, only zero, which
-// counts as inside. Fused operations would break that.
+// counts as inside. Fused operations would break that. Hits in doubt are decided by formulas/exact_edge.h.
 #pragma once
 
 #include "cpu/traversal/ray-inl.h"
@@ -24,65 +24,65 @@ RELIEF_INLINE LaneMask test_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3]
     return test.mask = same_side(test.u, test.v, test.w);
 }
 
-/// Triangles, of those that were hit, for which scalar::is_place_doubtful is true.
+/// The triangles of `test.mask` for which scalar::is_place_doubtful is true.
 template <size_t W>
 RELIEF_INLINE LaneMask find_doubtful_places(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3],
-                                            const Lanes<W> (&z)[3], const TriangleTest<W>& test) {
+                                            const Lanes<W> (&z)[3], const Lanes<W>& weighted_z,
+                                            const TriangleTest<W>& test) {
     const LaneMask around_origin = test.mask & ~same_side(z[0], z[1], z[2]);
     if (!around_origin) [[likely]]
         return 0;
     const auto find_largest = [](const Lanes<W>(&of)[3]) {
         return max(max(magnitude(of[0]), magnitude(of[1])), magnitude(of[2]));
     };
-    const Lanes<W> distance = magnitude(test.t) * magnitude(test.u + test.v + test.w);
     const Lanes<W> products = find_largest(x) * find_largest(y);
-    return around_origin & less_equal(distance, products * find_largest(z) * Lanes<W>(scalar::kEdgeRounding));
+    const Lanes<W> rounding = products * find_largest(z) * Lanes<W>(scalar::kEdgeRounding);
+    return around_origin & less_equal(magnitude(weighted_z), rounding);
 }
 
 /// Corners as rays see them and edge functions of W triangles, in memory.
 template <size_t W> struct StoredEdges { alignas(64) float x[3][W], y[3][W], edge[3][W]; };
 
-template <size_t W> HWY_NOINLINE void find_exact_edges(LaneMask lanes, StoredEdges<W>& stored) {
+template <size_t W> HWY_NOINLINE void refine_stored_edges(LaneMask lanes, StoredEdges<W>& stored) {
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t lane = uint32_t(__builtin_ctz(lanes));
         for (int k = 0; k < 3; ++k) {
             const int from = (k + 2) % 3, to = (k + 1) % 3;
-            float& edge = stored.edge[k][lane];
-            edge = scalar::find_exact_edge(stored.x[from][lane], stored.y[from][lane], stored.x[to][lane],
-                                           stored.y[to][lane], edge);
+            stored.edge[k][lane] = scalar::find_exact_edge(stored.x[from][lane], stored.y[from][lane],
+                                                           stored.x[to][lane], stored.y[to][lane]);
         }
     }
 }
 
-/// scalar::find_exact_edge for lanes in registers, which go to memory here alone.
+/// Replaces the edge functions of some lanes by scalar::find_exact_edge, and removes those from test.mask
+/// that miss their triangles then. Corners are stored only here: the usual path keeps them in registers.
 template <size_t W>
-RELIEF_INLINE void find_exact_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], LaneMask lanes,
-                                    TriangleTest<W>& test) {
+RELIEF_INLINE void refine_edges(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], LaneMask lanes,
+                                TriangleTest<W>& test) {
     StoredEdges<W> stored;
     for (int k = 0; k < 3; ++k) x[k].store(stored.x[k]), y[k].store(stored.y[k]);
     test.u.store(stored.edge[0]), test.v.store(stored.edge[1]), test.w.store(stored.edge[2]);
-    find_exact_edges(lanes, stored);
+    refine_stored_edges(lanes, stored);
     test.u = Lanes<W>::load(stored.edge[0]), test.v = Lanes<W>::load(stored.edge[1]);
     test.w = Lanes<W>::load(stored.edge[2]);
+    test.mask &= same_side(test.u, test.v, test.w) | ~lanes;
 }
 
-template <size_t W> RELIEF_INLINE Lanes<W> find_mean(const TriangleTest<W>& test, const Lanes<W> (&z)[3]) {
-    return (test.u * z[0] + test.v * z[1] + test.w * z[2]) / (test.u + test.v + test.w);
-}
-
-/// Places along the major axis, of which triangles without area have none. A long and narrow triangle that
-/// the ray grazes has edge functions that are small beside the products that they are differences of.
-/// Rounding then moves the place by much of the triangle's length, and a hit ahead of the ray may seem to be
-/// behind it.
+/// Sets test.t to the places of the hits along the major axis, and removes triangles without area from
+/// test.mask.
 template <size_t W>
 RELIEF_INLINE LaneMask find_places(const Lanes<W> (&x)[3], const Lanes<W> (&y)[3], const Lanes<W> (&z)[3],
                                    TriangleTest<W>& test) {
-    test.t = find_mean(test, z);
-    test.mask &= not_equal(test.u + test.v + test.w, Lanes<W>(0.0f));
-    if (const LaneMask doubtful = find_doubtful_places(x, y, z, test)) [[unlikely]] {
-        find_exact_edges(x, y, doubtful, test);
-        test.t = find_mean(test, z);
+    const auto weigh_z = [&] { return test.u * z[0] + test.v * z[1] + test.w * z[2]; };
+    const auto add_edges = [&] { return test.u + test.v + test.w; };
+    Lanes<W> weighted_z = weigh_z(), sum = add_edges();
+    test.mask &= not_equal(sum, Lanes<W>(0.0f));
+    if (const LaneMask lanes = find_doubtful_places(x, y, z, weighted_z, test)) [[unlikely]] {
+        refine_edges(x, y, lanes, test);
+        weighted_z = weigh_z(), sum = add_edges();
+        test.mask &= not_equal(sum, Lanes<W>(0.0f));
     }
+    test.t = weighted_z / sum;
     return test.mask;
 }
 
