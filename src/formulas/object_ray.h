@@ -145,13 +145,12 @@ FN TriangleHit intersect_sheared(const ObjectRay ray, const Vec3 a, const Vec3 b
     TriangleHit result = {uintBitsToFloat(0x7f800000u), 0.0f, 0.0f};
     TriangleEdges edges = weigh_edges(a, b, c, u, v, w);
     if (!is_triangle_met(edges)) return result;
-    if (is_place_doubtful(a, b, c, edges)) {
+    if (is_place_doubtful(a, b, c, edges))
         edges = weigh_edges(a, b, c, find_exact_edge(c.x, c.y, b.x, b.y), find_exact_edge(a.x, a.y, c.x, c.y),
                             find_exact_edge(b.x, b.y, a.x, a.y));
-        if (!is_triangle_met(edges)) return result;
-    }
     EXACT float t = edges.weighted_z / edges.sum * ray.shear_z + ray.shift;
-    if (!(t > t_min && t <= t_max)) return result;
+    // Asked again here and not in the branch: behind a return within it devices keep more registers.
+    if (!is_triangle_met(edges) || !(t > t_min && t <= t_max)) return result;
     result.t = t;
     result.weight_b = edges.v / edges.sum;
     result.weight_c = edges.w / edges.sum;
