@@ -34,10 +34,10 @@ const uint kColorPlace = 1u << kInputBaseColor;
 const uint kOpacityPlace = 1u << kInputOpacity;
 const uint kEmissionPlace = 1u << kInputEmission;
 const uint kNormalPlace = 1u << kInputNormal;
-// What a point has of itself, beside its opacity and normal; a texture of any other number makes it have
+// A point stores these numbers itself, and its opacity and normal. A texture of any other number gives it
 // InputNumbers.
 const uint kPointPlaces = kColorPlace | 1u << kInputRoughness | 1u << kInputMetallic;
-// What decides how much light goes straight through a clear wall.
+// These numbers decide how much light goes straight through a clear wall.
 const uint kWallPlaces = kOpacityPlace | 1u << kInputMetallic | 1u << kInputSpecularColor |
                          1u << kInputTransmissionWeight | 1u << kInputTransmissionColor;
 
@@ -59,13 +59,13 @@ FN Vec3 get_input_color(InputNumbers numbers, const uint place) {
     return color;
 }
 
-/// Ends at 1, but for an emission.
+/// Limits a number to [0, 1], or an emission to values from 0 on.
 FN float limit_input(const uint place, const float value) {
     return place < kInputEmission ? clamp(value, 0.0f, 1.0f) : max(value, 0.0f);
 }
 
-/// `value` of a texture for `count` words from `place` on, all of one number where they are three. Each ends
-/// in its range; a normal is as it is.
+/// Multiplies `count` words from `place` on by the value of a texture, and limits each to its range. A normal
+/// is replaced, not multiplied.
 FN InputNumbers apply_input(InputNumbers numbers, const uint place, const uint count, const Vec3 value) {
     if (place == kInputNormal) {
         numbers.word[kInputNormal] = value.x;
@@ -80,10 +80,9 @@ FN InputNumbers apply_input(InputNumbers numbers, const uint place, const uint c
     return numbers;
 }
 
-/// Each in its range; a normal as it is.
+/// Limits all numbers to their ranges. A normal stays as it is.
 FN InputNumbers limit_inputs(InputNumbers numbers) {
-    for (uint k = 0u; k < kInputEmission; ++k) numbers.word[k] = clamp(numbers.word[k], 0.0f, 1.0f);
-    for (uint k = kInputEmission; k < kInputNormal; ++k) numbers.word[k] = max(numbers.word[k], 0.0f);
+    for (uint k = 0u; k < kInputNormal; ++k) numbers.word[k] = limit_input(k, numbers.word[k]);
     return numbers;
 }
 

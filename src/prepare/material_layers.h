@@ -16,7 +16,7 @@ namespace relief {
 struct MaterialLayers {
     std::vector<scalar::LayerParameters> records;
     std::vector<Vec2f> entries; ///< blocks of the records (formulas/layer_table.h)
-    /// Of the blocks of records whose vertices have numbers of their own; one a record.
+    /// The grid of each record. It is used by records whose vertices have numbers of their own.
     std::vector<scalar::LayerGrid> grids;
     std::vector<uint32_t> record_of_material; ///< kNoIndex: without layers
     uint32_t vertex_entries = 0;              ///< of fill_vertex_block(), at most

@@ -62,7 +62,8 @@ Buffer make_buffer(const Device& device, const char* name, uint64_t count, uint6
                            .purpose = Purpose::ray_buffers});
 }
 
-/// Of points, the numbers of vertices behind them and tangents behind these, as paths.glsl has it.
+/// Returns the size of the buffer of points. It holds the points, then the numbers of vertices, then
+/// tangents, as paths.glsl reads them.
 uint64_t find_point_bytes(const PreparedScene& scene, uint64_t capacity) {
     constexpr uint64_t point = sizeof(scalar::SurfacePointData), numbers = sizeof(scalar::InputNumbers);
     uint64_t bytes = capacity * point;

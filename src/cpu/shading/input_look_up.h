@@ -8,14 +8,14 @@
 
 namespace relief::cpu {
 
-/// Where a texture is read; on its tile, if it has several.
+/// Returns the place on the uv plane at which a texture is read. A UDIM texture selects its tile by it.
 Vec2f find_texture_uv(const PlacedTexture& texture, const TexturePlace& place);
 
-/// Its value there. Nothing where a tile lacks.
+/// Returns the value of a texture at a place of find_texture_uv, or nothing where its tile is missing.
 std::optional<Vec3f> fetch_placed(const PlacedTexture& texture, const Vec2f& uv);
 
-/// The numbers at a place, each in its range, by the textures of `places` (scalar::kPointPlaces) alone.
-/// `numbers`: those before the textures.
+/// Multiplies `numbers` by the textures that `places` selects, a set of bits as scalar::kPointPlaces. Each
+/// result is limited to its range.
 scalar::InputNumbers find_inputs(std::span<const PlacedTexture> textures, uint32_t places,
                                  const scalar::InputNumbers& numbers, const TexturePlace& place);
 

@@ -21,7 +21,7 @@ struct PointMaterial {
 
 enum class BaseColor { with_texture, factor_alone };
 
-/// Of the materials at many hits, whose points have the uvs; without what VertexInputs add.
+/// Finds the materials at many hits. The points hold the uvs. Numbers that VertexInputs adds are left out.
 void make_point_materials(const PreparedScene& scene, const ShadingKernels& kernels,
                           std::span<const TraceHit> hits, std::span<const SurfacePoint> points,
                           std::span<PointMaterial> materials, BaseColor base_color);

@@ -95,7 +95,8 @@ InputTexture read_input_texture(const JsonNode& node, const MaterialInputKind& k
     return texture;
 }
 
-/// Where there is one: an object under the name of an input, or what its texture's own key has.
+/// Reads the texture of one input if the material has it: as an object under the name of the input, or under
+/// the key for its texture.
 void read_one(const JsonNode& node, const MaterialInputKind& kind, AssetCache& assets, Material& material) {
     for (const char* key : {kind.name, kind.alias}) {
         const auto found = key ? node.find(key) : std::nullopt;

@@ -109,7 +109,7 @@ const uint kGlassConstant = 17u;
 const uint kTerminatorsConstant = 18u;
 // Of kernels that shade: not 0 where the scene has shadow catchers.
 const uint kShadowCatchersConstant = 19u;
-// Of kernels that know of materials: not 0 where textures of one change numbers that points do not have of
+// Kernels that use materials get a number other than 0 if a texture changes numbers that points do not store
 // themselves (InputNumbers).
 const uint kVertexNumbersConstant = 20u;
 // Of kernels that add light to paths: not 0 where the picture has guides of a denoiser.
@@ -132,7 +132,8 @@ const uint kUvSetsConstant = 28u;
 const uint kTileStackConstant = 29u;
 // Kernels that read maps get a number other than 0 if tiles of a map continue each other.
 const uint kTileBordersConstant = 30u;
-// Of kernels that read textures of materials: not 0 where one of them has tiles or does not repeat.
+// Kernels that read textures of materials get a number other than 0 if one of them has tiles or does not
+// repeat.
 const uint kPlacedTexturesConstant = 31u;
 
 #include "formulas/end.h"

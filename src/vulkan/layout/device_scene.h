@@ -97,8 +97,8 @@ struct MaterialData {
     uint has_vertex_numbers; ///< these change numbers that points do not have of themselves
 };
 
-/// Of a material with textures. Entries lie behind all materials, in the same
-/// buffer, as its words are counted: from the next whole one on. So do those of the textures behind them.
+/// The inputs of a material with textures. The buffer of materials holds these entries behind all materials,
+/// and the textures behind them. Each array begins at the next multiple of its entry size.
 struct MaterialInputData {
     InputNumbers numbers;
     InputConstants constants;
