@@ -63,6 +63,25 @@ TEST_P(GrazedSlivers, are_missed_by_rays_that_start_behind_them) {
     });
 }
 
+/// A hit in doubt on a shared edge is not counted for both triangles, nor for none.
+TEST(GrazedTriangles, are_hit_one_of_two_at_their_shared_edge) {
+    const GrazedSliver sliver;
+    const std::vector<TraceRay> rays = sliver.make_rays(500, GrazedSliver::kAhead);
+    std::vector<TraceHit> hits[2];
+    for (const bool is_upper : {false, true}) {
+        hits[is_upper].resize(rays.size());
+        Tracer(prepare_scene(sliver.make_triangle_scene(is_upper), {}), {})
+            .closest_hits(rays, hits[is_upper]);
+    }
+    size_t both = 0, none = 0;
+    for (size_t k = 0; k < rays.size(); ++k) {
+        both += hits[0][k].is_hit() && hits[1][k].is_hit();
+        none += !hits[0][k].is_hit() && !hits[1][k].is_hit();
+    }
+    EXPECT_EQ(both, 0u);
+    EXPECT_EQ(none, 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Surfaces, GrazedSlivers, testing::Bool(),
                          [](const testing::TestParamInfo<bool>& info) {
                              return info.param ? "displaced" : "undisplaced";

@@ -31,6 +31,19 @@ class GrazedSliver {
         return scene;
     }
 
+    /// One of the two triangles of the undisplaced rectangle, which share its diagonal.
+    Scene make_triangle_scene(bool is_upper) const {
+        Scene scene = make_scene(false);
+        Mesh& mesh = scene.meshes[0];
+        mesh.face_sizes = {3};
+        if (is_upper)
+            mesh.position_indices = {0, 2, 3};
+        else
+            mesh.position_indices = {0, 1, 2};
+        mesh.uv_indices = mesh.position_indices;
+        return scene;
+    }
+
     static constexpr float kAhead = 0.05f;
     /// Of t: vertices are rounded as the ray sees them, which moves the hit by a thousand times as much.
     static constexpr float kTolerance = 0.01f;
